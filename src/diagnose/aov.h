@@ -1,0 +1,43 @@
+// The diagnostic planes: one table feeds the writer, the previews, --help and the manual.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "base/raw_plane.h"
+
+namespace varve {
+
+struct Aov {
+  std::string_view name;       ///< as given to --aov; the channel is varve.<name>[.<component>]
+  std::string_view components; ///< "" for one channel, else one letter each: "xy"
+  PixelType type;
+  std::string_view unit;
+  std::string_view range;
+  std::string_view colormap;   ///< OpenImageIO color map for --preview
+  double preview_low, preview_high;  ///< values shown as the ends of the color map
+  std::string_view meaning;
+};
+
+std::span<const Aov> diagnostic_aovs();
+const Aov* find_aov(std::string_view name);
+
+/// Why history was not used as it was, one bit each (AOV `reject`).
+enum RejectBit : std::uint32_t {
+  kRejectFirstFrame = 1,    ///< first frame of the sequence
+  kRejectCut = 2,           ///< restart on a cut or a gap
+  kRejectWindow = 4,        ///< previous position outside the data window
+  kRejectDepth = 8,         ///< previous surface at another depth
+  kRejectVector = 16,       ///< vector not finite or too long
+  kRejectEmptyHistory = 32, ///< no valid history there
+  kRejectPresent = 64,      ///< the present itself is not finite; history is kept, or a fill from neighbors
+};
+
+struct RejectName {
+  std::uint32_t bit;
+  std::string_view name, meaning;
+};
+std::span<const RejectName> reject_bits();
+
+}  // namespace varve

@@ -1,0 +1,53 @@
+// Which channel plays which part: color, depth and motion found by name, per layer and view.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "exr/file_header.h"
+#include "motion/convention.h"
+
+namespace varve {
+
+using VectorChannels = std::array<ChannelRef, 2>;  ///< x, y
+
+/// One thing to be resolved: a color with its own depth and motion, in one view.
+struct Subject {
+  std::string layer;  ///< layer path without the color suffix ("" for bare RGBA, "ViewLayer", "fg", part name if that tells)
+  std::string view;   ///< "" when the file has no views
+  bool default_view = true;
+  std::array<std::optional<ChannelRef>, 4> color;  ///< R G B A; a luminance image holds its one channel in the place of its name
+  std::optional<ChannelRef> depth;
+  std::optional<VectorChannels> backward, forward;  ///< as stored, before decoding
+  MotionEncoding backward_encoding, forward_encoding;
+  std::string convention;     ///< row of the convention table; "" when no vectors were found
+  double background_depth = 1e10;
+  std::vector<std::string> notes;  ///< what was assumed and from what evidence, a sentence each
+};
+
+/// What the user said about roles.
+struct RoleRequest {
+  std::vector<std::string> layers;  ///< layers to resolve; empty: the main one of each view; {"all"}: every color layer
+  std::vector<std::pair<std::string, std::string>> map;  ///< role=channel: R G B A depth motion.x motion.y forward.x forward.y
+  std::string convention = "auto";  ///< row of the table, or auto: told by names, never guessed
+  MotionEncoding encoding;          ///< overrides, used where `overrides` says so
+  bool override_bias = false, override_scale = false, override_shutter = false, override_sign_x = false,
+       override_sign_y = false, override_unit = false, override_direction = false;
+};
+
+/// Finds the subjects in the files of one frame (file 0 has the color; depth and motion are looked for in file 0
+/// and then in the role files). Views are matched with views, parts may differ. Throws Failure(inconsistent)
+/// when no color is found, when a named layer or channel does not exist (naming what does), and when vectors are there
+/// but their convention is not told by their names and not given.
+std::vector<Subject> find_subjects(std::span<const FileHeader> files, const RoleRequest& request);
+
+/// What a channel holds, as far as its name says; for pass-through rules and for probe.
+enum class ChannelClass { color, alpha, depth, motion, normal, position, uv, id, cryptomatte, other };
+ChannelClass classify(const Channel& channel);
+const char* name_of(ChannelClass);
+
+}  // namespace varve

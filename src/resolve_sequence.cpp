@@ -1,0 +1,7 @@
+#include "resolve_sequence.h"
+
+namespace varve {
+
+const char* version() { return VARVE_VERSION; }
+
+}  // namespace varve
