@@ -17,11 +17,11 @@ std::string value_arm(const Option& option) {
   if (!option.value.choices.empty()) {
     std::string words;
     for (const Choice& choice : option.value.choices) words += (words.empty() ? "" : " ") + choice.word;
-    action = "COMPREPLY=($(compgen -W \"" + words + "\" -- \"$cur\")); return";
+    action = "mapfile -t COMPREPLY < <(compgen -W \"" + words + "\" -- \"$cur\"); return";
   } else if (option.completes == Completes::files) {
-    action = "COMPREPLY=($(compgen -f -- \"$cur\")); return";
+    action = "mapfile -t COMPREPLY < <(compgen -f -- \"$cur\"); return";
   } else if (option.completes == Completes::folders) {
-    action = "COMPREPLY=($(compgen -d -- \"$cur\")); return";
+    action = "mapfile -t COMPREPLY < <(compgen -d -- \"$cur\"); return";
   }
   const std::string letter = option.letter ? std::string("|-") + option.letter : "";
   return "        " + dashed(option) + letter + ") " + action + " ;;\n";
@@ -41,11 +41,11 @@ std::string bash_completion() {
     for (const Option& option : options) values += value_arm(option);
     arms += "    " + std::string(command.name) + ")\n";
     if (!values.empty()) arms += "      case \"$prev\" in\n" + values + "      esac\n";
-    arms += "      if [[ \"$cur\" == -* ]]; then COMPREPLY=($(compgen -W \"" + words_of(options) + "\" -- \"$cur\"))\n";
+    arms += "      if [[ \"$cur\" == -* ]]; then mapfile -t COMPREPLY < <(compgen -W \"" + words_of(options) + "\" -- \"$cur\")\n";
     if (command.bit == kHelp)
-      arms += "      else COMPREPLY=($(compgen -W \"" + help_words + "\" -- \"$cur\"))\n";
+      arms += "      else mapfile -t COMPREPLY < <(compgen -W \"" + help_words + "\" -- \"$cur\")\n";
     else if (!command.positional.empty())
-      arms += "      else COMPREPLY=($(compgen -f -- \"$cur\"))\n";
+      arms += "      else mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n";
     arms += "      fi ;;\n";
   }
   return "# bash completion for varve\n"
@@ -55,7 +55,7 @@ std::string bash_completion() {
          "  if [[ \"$prev\" == = ]]; then prev=${COMP_WORDS[COMP_CWORD-2]}; fi\n"
          "  if [[ \"$cur\" == = ]]; then cur=; fi\n"
          "  COMPREPLY=()\n"
-         "  if ((COMP_CWORD == 1)); then COMPREPLY=($(compgen -W \"" +
+         "  if ((COMP_CWORD == 1)); then mapfile -t COMPREPLY < <(compgen -W \"" +
          names +
          " --help --version\" -- \"$cur\")); return; fi\n"
          "  case \"${COMP_WORDS[1]}\" in\n" +

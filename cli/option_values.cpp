@@ -54,16 +54,23 @@ Value<Settings> preset_value() {
   return value;
 }
 
-Value<Settings> knob_value(const Knob& knob) {
-  Value<Settings> value = inside<Settings>(
-      knob.value, [](auto& s) -> auto& { return s.job.parameters; });
-  if (knob.name == "convention")  // the finder of roles needs it as well
-    value.read = [read = value.read](Settings& s, std::string_view text) {
-      if (!read(s, text)) return false;
-      s.job.roles.convention = text;
-      return true;
-    };
+Value<Settings> convention_value() {
+  Value<Settings> value;
+  value.choices.push_back({"auto", "told by the names of the channels; refused where the names do not tell"});
+  for (const MotionConvention& row : motion_conventions())
+    value.choices.push_back({std::string(row.name), std::string(row.note)});
+  value.allowed = choices_text(value.choices);
+  value.read = [](Settings& s, std::string_view text) {
+    if (text != "auto" && !find_motion_convention(text)) return false;
+    s.job.roles.convention = text;
+    return true;
+  };
+  value.show = [](const Settings& s) { return s.job.roles.convention; };
   return value;
+}
+
+Value<Settings> knob_value(const Knob& knob) {
+  return inside<Settings>(knob.value, [](auto& s) -> auto& { return s.job.parameters; });
 }
 
 }  // namespace varve::cli

@@ -89,6 +89,8 @@ Value<Settings> overriding(const Value<Settings>& value, IsSet is_set) {
 Value<Settings> map_value();
 /// Names of diagnostic planes.
 Value<Settings> aovs_value();
+/// auto, or a row of the convention table.
+Value<Settings> convention_value();
 /// Sets all parameters.
 Value<Settings> preset_value();
 /// A parameter of the resolve.

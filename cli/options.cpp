@@ -112,6 +112,9 @@ void add_motion_options(std::vector<Option>& rows) {
   const auto add = [&rows, group](const char* name, const char* metavar, const char* help, Value<Settings> value) {
     rows.push_back({name, 0, metavar, kBoth, kExpert, group, help, std::move(value)});
   };
+  add("convention", "NAME", "How the renderer wrote its motion vectors; see `varve help conventions`.", convention_value());
+  rows.back().tier = kBasic;
+  rows.back().topic = "conventions";
   add("motion-bias", "VALUE",
       "Subtracted from the stored vector before anything else. Without it as the convention says.",
       overriding(
@@ -158,10 +161,9 @@ void add_parameter_options(std::vector<Option>& rows) {
   rows.back().topic = "presets";
   for (const Knob& knob : knobs()) {
     // What says how to read the input matters to probe as well.
-    const unsigned commands = knob.name == "convention" || knob.name == "depth-kind" ? kBoth : unsigned(kResolve);
+    const unsigned commands = knob.name == "depth-kind" ? kBoth : unsigned(kResolve);
     rows.push_back({std::string(knob.name), 0, std::string(knob.metavar), commands, knob.tier, std::string(knob.group),
                     std::string(knob.meaning), knob_value(knob)});
-    if (knob.name == "convention") rows.back().topic = "conventions";
   }
 }
 

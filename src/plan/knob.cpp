@@ -25,6 +25,10 @@ constexpr Word<HistoryFilter> kHistoryFilters[] = {
     {"catmull-rom9", HistoryFilter::catmull_rom9, "9 bilinear taps with the result of 16"},
     {"catmull-rom5", HistoryFilter::catmull_rom5, "5 bilinear taps without the corners, renormalized"},
 };
+constexpr Word<bool> kSwitches[] = {
+    {"on", true, "no overshoot beside bright edges"},
+    {"off", false, "the filter as it is"},
+};
 constexpr Word<Disocclusion> kDisocclusions[] = {
     {"window", Disocclusion::window, "only where the previous position lies outside the data window"},
     {"depth", Disocclusion::depth, "also where another surface lay there; needs depth"},
@@ -70,30 +74,12 @@ Value<Parameters> number(At at, Range range) {
   return number_value<Parameters>(at, range);
 }
 
-/// auto, or a row of the convention table.
-Value<Parameters> convention() {
-  Value<Parameters> value;
-  value.choices.push_back({"auto", "told by the names of the channels; refused where the names do not tell"});
-  for (const MotionConvention& row : motion_conventions())
-    value.choices.push_back({std::string(row.name), std::string(row.note)});
-  value.allowed = choices_text(value.choices);
-  value.read = [](Parameters& parameters, std::string_view text) {
-    if (text != "auto" && !find_motion_convention(text)) return false;
-    parameters.motion.convention = text;
-    return true;
-  };
-  value.show = [](const Parameters& parameters) { return parameters.motion.convention; };
-  return value;
-}
-
 }  // namespace
 
 std::vector<Knob> knobs() {
   constexpr auto basic = Tier::basic, advanced = Tier::advanced, expert = Tier::expert;
   constexpr std::string_view motion = "Motion and depth", history = "History", rectify = "Rectification";
   return {
-      {"convention", "NAME", motion, basic, "How the renderer wrote its motion vectors; see `varve help conventions`.",
-       convention()},
       {"dilation", "WORD", motion, advanced, "Whose vector a pixel follows.",
        word(
            [](auto& p) -> auto& { return p.motion.dilation; }, kDilations)},
@@ -114,6 +100,8 @@ std::vector<Knob> knobs() {
       {"history-filter", "WORD", history, advanced, "Filter that reads history between pixels.",
        word(
            [](auto& p) -> auto& { return p.recursive.history_filter; }, kHistoryFilters)},
+      {"dering", "WORD", history, expert, "Whether what the Catmull-Rom filters read is held between the four nearest pixels.",
+       word([](auto& p) -> auto& { return p.recursive.dering; }, kSwitches)},
       {"disocclusion", "WORD", history, advanced, "Where history is dropped because the surface was not seen before.",
        word(
            [](auto& p) -> auto& { return p.recursive.disocclusion; }, kDisocclusions)},
