@@ -17,23 +17,34 @@ using VectorChannels = std::array<ChannelRef, 2>;  ///< x, y
 
 /// One thing to be resolved: a color with its own depth and motion, in one view.
 struct Subject {
-  std::string layer;  ///< layer path without the color suffix ("" for bare RGBA, "ViewLayer", "fg", part name if that tells)
-  std::string view;   ///< "" when the file has no views
+  std::string
+      layer;  ///< layer path without the color suffix ("" for bare RGBA, "ViewLayer", "fg", part name if that tells)
+  std::string view;  ///< "" when the file has no views
   bool default_view = true;
-  std::array<std::optional<ChannelRef>, 4> color;  ///< R G B A; a luminance image holds its one channel in the place of its name
+  std::array<std::optional<ChannelRef>, 4>
+      color;  ///< R G B A; a lone channel stands in the place of its name, Y in that of G
   std::optional<ChannelRef> depth;
   std::optional<VectorChannels> backward, forward;  ///< as stored, before decoding
   MotionEncoding backward_encoding, forward_encoding;
-  std::string convention;     ///< row of the convention table; "" when no vectors were found
+  std::string convention;  ///< row of the convention table; "" when no vectors were found
   double background_depth = 1e10;
   std::vector<std::string> notes;  ///< what was assumed and from what evidence, a sentence each
 };
 
+/// The part that holds the subject's color.
+inline int part_of(const Subject& subject) {
+  for (const auto& channel : subject.color)
+    if (channel) return channel->part;
+  return 0;
+}
+
 /// What the user said about roles.
 struct RoleRequest {
   std::vector<std::string> layers;  ///< layers to resolve; empty: the main one of each view; {"all"}: every color layer
-  std::vector<std::pair<std::string, std::string>> map;  ///< role=channel: R G B A depth motion.x motion.y forward.x forward.y
-  std::string convention = "auto";  ///< row of the table, or auto: told by names, never guessed
+  std::vector<std::pair<std::string, std::string>>
+      map;                          ///< role=channel: R G B A depth motion.x motion.y forward.x forward.y;
+                                    ///< full channel names, or part:channel as probe prints them
+  std::string convention = "auto";  ///< row of the table; auto: told by names, never guessed; none: no vectors are used
   MotionEncoding encoding;          ///< overrides, used where `overrides` says so
   bool override_bias = false, override_scale = false, override_shutter = false, override_sign_x = false,
        override_sign_y = false, override_unit = false, override_direction = false;

@@ -20,6 +20,7 @@ class SequencePattern {
   std::string path(int frame) const;
   const std::string& text() const { return text_; }
   /// Frame numbers of the files on disk that match, ascending. Longer numbers than the padding match too.
+  /// A name without a placeholder is frame 1 if the file exists. A folder that cannot be read has no frames.
   std::vector<int> frames_on_disk() const;
 
  private:
@@ -33,7 +34,7 @@ class SequencePattern {
 /// Throws Failure(usage) naming the part that cannot be read; more than ten million frames are refused.
 std::vector<int> parse_frame_list(std::string_view text);
 
-/// Shortest list text that parse_frame_list turns into the same frames: "1-10,20,30-50x2".
+/// Short list text that parse_frame_list turns into the same frames: "1-10,20,30-50x2"; "" for no frames.
 std::string format_frame_list(const std::vector<int>& frames);
 
 }  // namespace varve

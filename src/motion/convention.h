@@ -23,7 +23,8 @@ enum class Evidence { measured, documented, unverified };
 
 struct MotionConvention {
   std::string_view name;
-  std::string_view layers;  ///< last element of the layer names it is found under, comma separated, any case
+  std::string_view layers;  ///< last element of the layer names it is found under, comma separated, any case;
+                            ///< "" for any layer. A channel with a dot ("forward.u") brings its own layer.
   std::string_view backward_x, backward_y;  ///< channel that holds the vector to the previous frame; "" if none
   std::string_view forward_x, forward_y;    ///< channel that holds the vector to the next frame; "" if none
   MotionEncoding backward, forward;
@@ -32,7 +33,7 @@ struct MotionConvention {
   std::string_view note;
 };
 
-/// Every convention that `--convention` takes, in the order of `varve help conventions`.
+/// Every convention that `--convention` takes besides `auto` and `none`, in the order of `varve help conventions`.
 std::span<const MotionConvention> motion_conventions();
 const MotionConvention* find_motion_convention(std::string_view name);
 

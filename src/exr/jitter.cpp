@@ -1,0 +1,206 @@
+#include "exr/jitter.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "base/error.h"
+#include "base/json.h"
+
+namespace varve {
+namespace {
+
+constexpr std::uintmax_t kMaxSidecarBytes = std::uintmax_t(64) << 20;  // a million frames need a third of it
+constexpr int kMaxHaltonLength = 1 << 20;
+
+// A sample one whole pixel away cannot belong to the pixel, so more than that is another unit or another thing.
+// Written so that NaN fails.
+bool within_a_pixel(const Jitter& jitter) { return std::abs(jitter.x) <= 1 && std::abs(jitter.y) <= 1; }
+
+std::string_view trimmed(std::string_view text) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::vector<std::string_view> split_at_commas(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    fields.push_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return fields;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+template <class Number>
+std::optional<Number> whole_number(std::string_view text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);  // from_chars knows no plus
+  Number value{};
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// Reads the sidecar line by line; knows where it is, for messages.
+struct SidecarReader {
+  const std::string& path;
+  JitterSource& source;
+  int line = 0;
+  bool has_header = false, has_samples = false;
+
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw Failure(ExitCode::input, path + ":" + std::to_string(line) + ": " + why);
+  }
+
+  void header(const std::vector<std::string_view>& fields) {
+    using Names = std::vector<std::string_view>;
+    has_samples = fields == Names{"frame", "sample", "jx", "jy"};
+    has_header = has_samples || fields == Names{"frame", "jx", "jy"};
+    if (!has_header) refuse("the first line must be the header \"frame,jx,jy\" or \"frame,sample,jx,jy\"");
+  }
+
+  void row(const std::vector<std::string_view>& fields) {
+    if (fields.size() != (has_samples ? 4u : 3u))
+      refuse("has " + std::to_string(fields.size()) + " fields, but the header names " + (has_samples ? "4" : "3"));
+    const std::optional<int> frame = whole_number<int>(fields[0]);
+    const std::optional<int> sample = has_samples ? whole_number<int>(fields[1]) : std::optional<int>(0);
+    const std::optional<double> x = whole_number<double>(fields[fields.size() - 2]);
+    const std::optional<double> y = whole_number<double>(fields.back());
+    if (!frame || !sample || !x || !y) refuse("holds something that is not a number");
+    if (!within_a_pixel({*x, *y}))
+      refuse("the jitter of frame " + std::to_string(*frame) +
+             " is more than one pixel; give sample position minus pixel centre in pixels, y down");
+    if (*sample != 0) return;
+    if (!source.table.emplace(*frame, Jitter{*x, *y}).second)
+      refuse("frame " + std::to_string(*frame) + " is listed twice");
+  }
+
+  void read(std::istream& in) {
+    for (std::string text; std::getline(in, text);) {
+      ++line;
+      std::string_view rest = text;
+      if (line == 1 && rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // byte order mark of some editors
+      rest = trimmed(rest);
+      if (rest.empty() || rest.starts_with('#')) continue;
+      if (has_header)
+        row(split_at_commas(rest));
+      else
+        header(split_at_commas(rest));
+    }
+  }
+};
+
+JitterSource read_sidecar(const std::string& path) {
+  std::error_code problem;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, problem);
+  std::ifstream in(path, std::ios::binary);
+  if (problem || !in)
+    throw Failure(ExitCode::input,
+                  path + ": the jitter file cannot be read; --jitter takes auto, none, halton23 or a CSV file");
+  if (bytes > kMaxSidecarBytes)
+    throw Failure(ExitCode::input, path + ": is too large for a jitter file (more than 64 MiB)");
+  JitterSource source;
+  source.kind = JitterSource::Kind::table;
+  SidecarReader reader{path, source};
+  reader.read(in);
+  if (in.bad()) throw Failure(ExitCode::input, path + ": the jitter file cannot be read to its end");
+  if (source.table.empty())
+    throw Failure(ExitCode::input,
+                  path + ": holds no jitter; it needs the header \"frame,jx,jy\" and a line for each frame");
+  source.description = path + (reader.has_samples ? " (several samples in a frame: sample 0 is taken)" : "");
+  return source;
+}
+
+JitterSource halton(const std::string& text) {
+  JitterSource source;
+  source.kind = JitterSource::Kind::halton23;
+  if (text != "halton23") {
+    const std::optional<int> length =
+        whole_number<int>(std::string_view(text).substr(std::string_view("halton23:").size()));
+    if (!length || *length < 1 || *length > kMaxHaltonLength)
+      throw Failure(ExitCode::usage,
+                    "--jitter " + text + ": the length must be a number from 1 to 1048576, such as halton23:16");
+    source.length = *length;
+  }
+  source.description = "Halton (2,3), " + std::to_string(source.length) + " points, frame 1 is the first";
+  return source;
+}
+
+// Digits of `index` in `base`, mirrored at the radix point.
+double radical_inverse(int index, int base) {
+  double value = 0, digit = 1;
+  for (; index > 0; index /= base) {
+    digit /= base;
+    value += digit * (index % base);
+  }
+  return value;
+}
+
+Jitter halton_point(int frame, int length) {
+  const std::int64_t turn = (std::int64_t(frame) - 1) % length;
+  const int index = int(turn < 0 ? turn + length : turn) + 1;
+  return {radical_inverse(index, 2) - 0.5, radical_inverse(index, 3) - 0.5};
+}
+
+std::optional<Jitter> jitter_in_header(const Part& part) {
+  for (const Attribute& attribute : part.attributes)
+    if (attribute.name == "jitter" && attribute.type == "v2f" && attribute.numbers.size() == 2)
+      return Jitter{attribute.numbers[0], attribute.numbers[1]};
+  for (const Attribute& attribute : part.attributes) {
+    if (attribute.name != "Note" || attribute.type != "string") continue;
+    const std::optional<JsonValue> note = parse_json(attribute.text);
+    const JsonValue* member = note ? note->find("jitter") : nullptr;
+    const std::optional<std::vector<double>> pair = member ? member->numbers() : std::nullopt;
+    if (pair && pair->size() == 2) return Jitter{(*pair)[0], (*pair)[1]};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+JitterSource parse_jitter_source(const std::string& text) {
+  if (text == "auto") return {};
+  JitterSource source;
+  source.kind = JitterSource::Kind::none;
+  if (text == "none") return source;
+  if (text == "halton23" || text.starts_with("halton23:")) return halton(text);
+  std::error_code ignored;
+  const bool looks_like_file = text.find_first_of("./") != std::string::npos || std::filesystem::exists(text, ignored);
+  if (!looks_like_file)
+    throw Failure(ExitCode::usage,
+                  "--jitter " + text + ": unknown; it takes auto, none, halton23, halton23:N or a CSV file");
+  return read_sidecar(text);
+}
+
+std::optional<Jitter> jitter_of(const JitterSource& source, const Part& part, int frame) {
+  switch (source.kind) {
+    case JitterSource::Kind::none:
+      return std::nullopt;
+    case JitterSource::Kind::halton23:
+      return halton_point(frame, source.length);
+    case JitterSource::Kind::table: {
+      const auto found = source.table.find(frame);
+      return found == source.table.end() ? std::nullopt : std::optional<Jitter>(found->second);
+    }
+    case JitterSource::Kind::automatic:
+      break;
+  }
+  const std::optional<Jitter> jitter = jitter_in_header(part);
+  if (jitter && !within_a_pixel(*jitter))
+    throw Failure(ExitCode::inconsistent,
+                  "frame " + std::to_string(frame) + ": the jitter in the header" +
+                      (part.name.empty() ? "" : " of part \"" + part.name + "\"") +
+                      " is more than one pixel or not a number; give the jitter with --jitter FILE, or --jitter none");
+  return jitter;
+}
+
+}  // namespace varve
