@@ -1,4 +1,5 @@
-// consumer PNG: prints the version and writes a picture, so that headers, archive, dependencies and module are all used.
+// consumer PNG: prints the version and writes a picture, so that headers, archive, dependencies and module are all
+// used.
 #include <cstdio>
 
 #include "base/error.h"
