@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/raw_plane.h"
+#include "base/reject.h"
 
 namespace varve {
 
@@ -23,17 +24,7 @@ struct Aov {
 std::span<const Aov> diagnostic_aovs();
 const Aov* find_aov(std::string_view name);
 
-/// Why history was not used as it was, one bit each (AOV `reject`).
-enum RejectBit : std::uint32_t {
-  kRejectFirstFrame = 1,    ///< first frame of the sequence
-  kRejectCut = 2,           ///< restart on a cut or a gap
-  kRejectWindow = 4,        ///< previous position outside the data window
-  kRejectDepth = 8,         ///< previous surface at another depth
-  kRejectVector = 16,       ///< vector not finite or too long
-  kRejectEmptyHistory = 32, ///< no valid history there
-  kRejectPresent = 64,      ///< the present itself is not finite; history is kept, or a fill from neighbors
-};
-
+/// The bits of the plane `reject`, for help and manual.
 struct RejectName {
   std::uint32_t bit;
   std::string_view name, meaning;

@@ -31,6 +31,13 @@ struct Subject {
   std::vector<std::string> notes;  ///< what was assumed and from what evidence, a sentence each
 };
 
+/// The part that holds the subject's color.
+inline int part_of(const Subject& subject) {
+  for (const auto& channel : subject.color)
+    if (channel) return channel->part;
+  return 0;
+}
+
 /// What the user said about roles.
 struct RoleRequest {
   std::vector<std::string> layers;  ///< layers to resolve; empty: the main one of each view; {"all"}: every color layer

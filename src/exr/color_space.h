@@ -15,15 +15,17 @@ namespace varve {
 /// alpha before and multiplied after where alpha > 0, unless the conversion is linear.
 class ColorConversion {
  public:
-  /// `config`: path of a config, or empty for $OCIO. `to` empty: the role scene_linear. Throws Failure(usage) naming the
-  /// config and the spaces it has when something is unknown.
+  /// `config`: path of a config, or empty for $OCIO. `to` empty: the role scene_linear. Throws Failure(usage) naming
+  /// the config and the spaces it has when something is unknown, and when no config is told; Failure(input) when the
+  /// config or a file it needs is missing or broken.
   static ColorConversion between(const std::string& config, const std::string& from, const std::string& to);
 
   ColorConversion(ColorConversion&&) noexcept;
   ColorConversion& operator=(ColorConversion&&) noexcept;
   ~ColorConversion();
 
-  /// Converts every pixel of the window in place, rows in parallel. Non-finite results are left for the caller to sanitize.
+  /// Converts every pixel of the window in place, rows in parallel. Pixels with a non-finite
+  /// color stay as they are, and touch no other; non-finite results are left for the caller to sanitize.
   void apply(Plane<glm::vec4>& color, Workers& workers) const;
 
  private:
@@ -36,10 +38,12 @@ class ColorConversion {
 class DisplayTransform {
  public:
   /// Empty display or view: the config's default. Throws Failure(usage) like ColorConversion::between.
-  static DisplayTransform make(const std::string& config, const std::string& from, const std::string& display, const std::string& view);
+  static DisplayTransform make(const std::string& config, const std::string& from, const std::string& display,
+                               const std::string& view);
   DisplayTransform(DisplayTransform&&) noexcept;
   DisplayTransform& operator=(DisplayTransform&&) noexcept;
   ~DisplayTransform();
+  /// In place; alpha passes through, and colors are taken as over black. NaN counts as 0, infinities as +-65504.
   void apply_row(glm::vec4* pixels, int count) const;
 
  private:

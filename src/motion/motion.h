@@ -1,0 +1,55 @@
+// From stored vectors to the backward motion that a pixel follows: decode, invert where only the future is known, dilate.
+#pragma once
+
+#include <optional>
+
+#include <glm/vec2.hpp>
+
+#include "base/parallel.h"
+#include "base/plane.h"
+#include "motion/convention.h"
+
+namespace varve {
+
+/// Which of the 3x3 neighbors' vectors a pixel follows: its own, that of the nearest surface (Pedersen 2016), or the
+/// longest (Salvi 2016). Either keeps the antialiased rim of a moving thing moving with it.
+enum class Dilation { none, nearest, longest };
+
+/// What a depth channel counts: distance (larger is farther), 1/distance, or negative z.
+enum class DepthKind { distance, inverse, negative };
+
+struct MotionParameters {
+  Dilation dilation = Dilation::longest;
+  double max_length = 16384;  ///< px; a longer vector is unusable
+  DepthKind depth_kind = DepthKind::distance;
+};
+
+/// Stored vectors to pixels, y down: `decoded = sign * ((v - bias) * scale) / shutter`, then the unit. `x` and `y` cover the
+/// same window. Vectors that are not finite, or longer than max_length, become NaN in both parts.
+/// Returns how many did, through `unusable`.
+Plane<glm::vec2> decode_motion(const Plane<float>& x, const Plane<float>& y, const MotionEncoding& encoding,
+                               const Window& display_window, double max_length, Workers& workers, std::size_t& unusable);
+
+/// Depth in the program's terms: planar distance, larger is farther, background +inf. Background is: not finite, zero or
+/// below (as a distance), or from `background` on.
+void canonical_depth(Plane<float>& depth, DepthKind kind, double background, Workers& workers);
+
+/// Backward motion from the vectors of the previous frame to this one: each previous pixel lands, with its motion turned round,
+/// on the four pixels around where it goes; the nearest surface wins, then the closest landing, then the first in
+/// reading order. Where nothing lands (a surface that was hidden), this frame's own forward vector turned round stands in.
+/// `previous_depth` may be empty. Reads: the whole previous frame. Size of the result: `forward.window()`.
+Plane<glm::vec2> invert_forward_motion(const Plane<glm::vec2>& previous_forward, const Plane<float>& previous_depth,
+                                       const Plane<glm::vec2>& forward);
+
+/// Chosen vectors, and the depth of the pixel each came from (empty without depth).
+struct DilatedMotion {
+  Plane<glm::vec2> motion;
+  Plane<float> depth;
+};
+
+/// 3x3 dilation; reads a border of one pixel, neighbors outside the window do not count. Ties go to the pixel itself, then in
+/// reading order. NaN vectors take no part; a pixel whose own vector is NaN takes a neighbor's if there is one.
+/// `nearest` needs a depth; where all is background the pixel keeps its own vector.
+DilatedMotion dilate_motion(Plane<glm::vec2> motion, const Plane<float>& depth, Dilation dilation, Workers& workers);
+
+}  // namespace varve

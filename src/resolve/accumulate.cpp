@@ -1,0 +1,167 @@
+#include "resolve/accumulate.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "resolve/accumulate_row.h"
+#include "resolve/sample_weights.h"
+
+namespace varve {
+namespace {
+
+template <class P>
+auto* floats(P& pixels) {
+  using Float = std::conditional_t<std::is_const_v<std::remove_reference_t<decltype(*pixels.row(0))>>, const float, float>;
+  return reinterpret_cast<Float*>(pixels.row(pixels.window().y0));
+}
+
+/// A plane of T as rows of floats, T made of floats only.
+template <class T>
+PixelRows<const float> read_rows(const Plane<T>& plane) {
+  if (plane.empty()) return {nullptr, 0};
+  return {floats(plane), plane.stride() * std::ptrdiff_t(sizeof(T) / sizeof(float))};
+}
+template <class T>
+PixelRows<float> write_rows(Plane<T>& plane) {
+  if (plane.empty()) return {nullptr, 0};
+  return {floats(plane), plane.stride() * std::ptrdiff_t(sizeof(T) / sizeof(float))};
+}
+
+/// The neighborhood's samples in the space of the box, border and all.
+Plane<glm::vec4> rotate_to_ycocg(const Plane<glm::vec4>& color, Workers& workers) {
+  const Window& w = color.window();
+  const int b = color.border();
+  Plane<glm::vec4> out(w, b);
+  workers.for_rows(w.y0 - b, w.y1 + b, [&](int y) {
+    const glm::vec4* from = color.row(y) - b;
+    glm::vec4* to = out.row(y) - b;
+    for (int x = 0; x < w.width() + 2 * b; ++x) {
+      const glm::vec4 c = from[x];
+      const float rb = c.r * 0.25f + c.b * 0.25f;
+      to[x] = {rb + c.g * 0.5f, c.r * 0.5f - c.b * 0.5f, c.g * 0.5f - rb, c.a};
+    }
+  });
+  return out;
+}
+
+void (*kernel_for(Isa isa))(const AccumulateView&, int, const RowScratch&, RowCounts&) {
+#ifdef VARVE_HAVE_AVX2
+  if (isa != Isa::baseline && __builtin_cpu_supports("avx2")) return avx2::accumulate_row;
+#endif
+  (void)isa;
+  return baseline::accumulate_row;
+}
+
+/// Row buffers of one worker.
+struct Scratch {
+  Plane<glm::vec4> history;
+  Plane<float> total, spread;
+  Plane<std::uint32_t> reject;
+
+  explicit Scratch(int width)
+      : history(Window{0, 0, width, 1}), total(Window{0, 0, width, 1}), spread(Window{0, 0, width, 1}),
+        reject(Window{0, 0, width, 1}) {}
+  RowScratch view() { return {floats(history), total.row(0), spread.row(0), reject.row(0)}; }
+};
+
+History make_history(const Window& w) {
+  History h;
+  h.color = Plane<glm::vec4>(w);
+  h.total = Plane<float>(w);
+  h.spread = Plane<float>(w);
+  h.rows_valid.resize(std::size_t(w.height()));
+  return h;
+}
+
+}  // namespace
+
+Accumulated accumulate(const Present& present, const History& previous, const RecursiveParameters& recursive,
+                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, std::uint32_t restart_bit,
+                       const DiagnosticsWanted& wanted, Workers& workers, Isa isa) {
+  const Window& w = present.color.window();
+  Accumulated out{make_history(w), {}, {}};
+  if (w.empty()) return out;
+  if (wanted.clip) out.diagnostics.clip = Plane<float>(w);
+  if (wanted.weight) out.diagnostics.weight = Plane<float>(w);
+  if (wanted.reject) out.diagnostics.reject = Plane<std::uint32_t>(w);
+
+  // What is blended in: the sample of the pixel, or the samples around its centre.
+  WeighedPresent weighed;
+  if (recursive.sample_filter != SampleFilter::none && jitter)
+    weighed = weigh_samples(present, recursive.sample_filter, *jitter, workers);
+  const bool rotated = rectify.box != Box::none && rectify.space == BoxSpace::ycocg;
+  const Plane<glm::vec4> ycocg = rotated ? rotate_to_ycocg(present.color, workers) : Plane<glm::vec4>();
+
+  // At rest: every pixel stays where it is.
+  const Plane<glm::vec2> at_rest = present.motion.empty() ? Plane<glm::vec2>(w, 0, glm::vec2(0.0f)) : Plane<glm::vec2>();
+
+  AccumulateView v{};
+  v.width = w.width();
+  v.height = w.height();
+  v.color = read_rows(weighed.color.empty() ? present.color : weighed.color);
+  v.neighbors = read_rows(rotated ? ycocg : present.color);
+  v.weight = read_rows(present.valid);
+  v.motion = read_rows(present.motion.empty() ? at_rest : present.motion);
+  v.sample_weight = read_rows(weighed.sample_weight);
+  v.radius = rectify.window / 2;
+  std::vector<std::uint8_t> rows_valid(std::size_t(w.height() + 2 * v.radius), 0);
+  std::copy(present.rows_valid.begin(), present.rows_valid.end(), rows_valid.begin() + v.radius);
+  v.rows_valid = rows_valid.data() + v.radius;
+
+  if (!previous.empty()) {
+    const Window& h = previous.color.window();
+    v.history_width = h.width();
+    v.history_height = h.height();
+    v.shift_x = w.x0 - h.x0;
+    v.shift_y = w.y0 - h.y0;
+    v.history_color = read_rows(previous.color);
+    v.history_total = read_rows(previous.total);
+    v.history_spread = read_rows(previous.spread);
+    v.history_rows_valid = previous.rows_valid.data();
+    if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty() && !previous.depth.empty()) {
+      v.depth = read_rows(present.depth);
+      v.history_depth = read_rows(previous.depth);
+    }
+  }
+
+  v.out_color = write_rows(out.history.color);
+  v.out_total = write_rows(out.history.total);
+  v.out_spread = write_rows(out.history.spread);
+  v.out_clip = write_rows(out.diagnostics.clip);
+  v.out_weight = write_rows(out.diagnostics.weight);
+  if (wanted.reject) v.out_reject = {out.diagnostics.reject.row(w.y0), out.diagnostics.reject.stride()};
+  v.out_rows_valid = out.history.rows_valid.data();
+  v.restart_bit = restart_bit;
+  v.filter = recursive.history_filter;
+  v.dering = recursive.dering;
+  v.box = rectify.box;
+  v.rule = rectify.rule;
+  v.anchor = rectify.anchor;
+  v.space = rectify.space;
+  v.gamma = rectify.gamma;
+  v.alpha_rule = recursive.alpha_rule;
+  v.alpha = recursive.alpha;
+  v.depth_tolerance = recursive.depth_tolerance;
+  v.max_motion = 1e9;  // the decoder has made unusable vectors NaN; this only keeps positions inside an int
+
+  const auto kernel = kernel_for(isa);
+  std::vector<Scratch> scratch;
+  for (int i = 0; i < workers.count(); ++i) scratch.emplace_back(w.width());
+  std::vector<RowCounts> counts(std::size_t(workers.count()));
+  constexpr int kBand = 8;  // rows: neighbors share what is in the cache
+  workers.for_each(std::size_t((w.height() + kBand - 1) / kBand), [&](std::size_t band, int worker) {
+    const RowScratch rows = scratch[std::size_t(worker)].view();
+    const int end = std::min(w.height(), int(band + 1) * kBand);
+    for (int y = int(band) * kBand; y < end; ++y) kernel(v, y, rows, counts[std::size_t(worker)]);
+  });
+
+  for (const RowCounts& c : counts) {
+    out.counts.restarted += c.restarted;
+    out.counts.clipped += c.clipped;
+    out.counts.vectors_bad += c.vectors_bad;
+  }
+  if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty()) out.history.depth = present.depth.clone();
+  return out;
+}
+
+}  // namespace varve

@@ -1,0 +1,109 @@
+// One row of the recursive accumulator: fetch, rectify, blend. Compiled once per processor (VARVE_ISA).
+#include "resolve/accumulate_row.h"
+
+#include "resolve/fetch_history.h"
+#include "resolve/rectify.h"
+
+namespace varve::VARVE_ISA {
+namespace {
+
+template <HistoryFilter filter>
+void fetch_row(const AccumulateView& v, int y, const RowScratch& s) {
+  for (int x = 0; x < v.width; ++x) fetch_pixel<filter>(v, x, y, s);
+}
+
+void fetch_history(const AccumulateView& v, int y, const RowScratch& s) {
+  if (v.history_width == 0) {
+    for (int x = 0; x < v.width; ++x) s.total[x] = 0, s.reject[x] = v.restart_bit;
+    return;
+  }
+  for (int x = 0; x < v.width; ++x) s.reject[x] = 0;
+  switch (v.filter) {
+    case HistoryFilter::bilinear: return fetch_row<HistoryFilter::bilinear>(v, y, s);
+    case HistoryFilter::catmull_rom: return fetch_row<HistoryFilter::catmull_rom>(v, y, s);
+    case HistoryFilter::catmull_rom9: return fetch_row<HistoryFilter::catmull_rom9>(v, y, s);
+    case HistoryFilter::catmull_rom5: return fetch_row<HistoryFilter::catmull_rom5>(v, y, s);
+  }
+}
+
+template <Box kind, bool masked>
+void rectify_span(const AccumulateView& v, int y, int begin, int end, const RowScratch& s, RowCounts& counts) {
+  for (int x = begin; x < end; ++x) {
+    double distance = 0;
+    if (s.total[x] > 0) distance = rectify_pixel<kind, masked>(v, x, y, s.history + 4 * x);
+    if (distance > 0) ++counts.clipped;
+    if (v.out_clip.origin) v.out_clip.origin[y * v.out_clip.stride + x] = float(distance);
+  }
+}
+
+template <Box kind>
+void rectify_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
+  bool valid = true;
+  for (int j = -v.radius; j <= v.radius; ++j) valid = valid && v.rows_valid[y + j];
+  // Where every neighbor is known to count, the test for it is left out; the result is the same.
+  const int begin = valid ? (v.radius < v.width ? v.radius : v.width) : v.width;
+  const int end = valid ? (v.width - v.radius > begin ? v.width - v.radius : begin) : v.width;
+  rectify_span<kind, true>(v, y, 0, begin, s, counts);
+  rectify_span<kind, false>(v, y, begin, end, s, counts);
+  rectify_span<kind, true>(v, y, end, v.width, s, counts);
+}
+
+void rectify(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
+  switch (v.box) {
+    case Box::none:
+      if (v.out_clip.origin)
+        for (int x = 0; x < v.width; ++x) v.out_clip.origin[y * v.out_clip.stride + x] = 0;
+      return;
+    case Box::minmax: return rectify_row<Box::minmax>(v, y, s, counts);
+    case Box::variance: return rectify_row<Box::variance>(v, y, s, counts);
+    case Box::variance_minmax: return rectify_row<Box::variance_minmax>(v, y, s, counts);
+  }
+}
+
+/// Weight of the present, in (0, 1]. `total` is the weight of all samples before, `w` that of this one (1 on average).
+VARVE_INLINE double present_weight(const AccumulateView& v, double total, double w) {
+  // alpha is meant for a sample of weight 1; others move it in proportion, seen from the steady state.
+  const double steady = w == 1 ? v.alpha : v.alpha * w / (1 - v.alpha + v.alpha * w);
+  return v.alpha_rule == AlphaRule::fixed ? steady : biggest(steady, w / (total + w));
+}
+
+void blend_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
+  const float* weight = v.weight.origin + y * v.weight.stride;
+  bool all_valid = true;
+  for (int x = 0; x < v.width; ++x) {
+    const Float4 present = load(v.color.origin + y * v.color.stride + 4 * x);
+    const bool has_present = weight[x] > 0, has_history = s.total[x] > 0;
+    const double w = !has_present ? 0.0 : v.sample_weight.origin ? double(v.sample_weight.origin[y * v.sample_weight.stride + x]) : 1.0;
+    Float4 color = present;
+    double a = 1, total = w, spread = has_present ? 1 : 0;
+    if (has_history) {
+      const Float4 history = load(s.history + 4 * x);
+      a = w > 0 ? present_weight(v, double(s.total[x]), w) : 0.0;
+      color = narrow(widen(history) + (widen(present) - widen(history)) * a);
+      total = double(s.total[x]) + w;
+      spread = double(s.spread[x]) * (1 - a) * (1 - a) + a * a;
+    } else {
+      ++counts.restarted;
+      if (s.reject[x] & kRejectVector) ++counts.vectors_bad;
+    }
+    if (!has_present) s.reject[x] |= kRejectPresent;
+    all_valid = all_valid && total > 0;
+    store(v.out_color.origin + y * v.out_color.stride + 4 * x, color);
+    // A count beyond this changes nothing that a float can hold.
+    v.out_total.origin[y * v.out_total.stride + x] = float(smallest(total, 1e6));
+    v.out_spread.origin[y * v.out_spread.stride + x] = float(spread);
+    if (v.out_weight.origin) v.out_weight.origin[y * v.out_weight.stride + x] = float(1 - a);
+    if (v.out_reject.origin) v.out_reject.origin[y * v.out_reject.stride + x] = s.reject[x];
+  }
+  v.out_rows_valid[y] = all_valid;
+}
+
+}  // namespace
+
+void accumulate_row(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts) {
+  fetch_history(view, y, scratch);
+  rectify(view, y, scratch, counts);
+  blend_row(view, y, scratch, counts);
+}
+
+}  // namespace varve::VARVE_ISA

@@ -1,0 +1,52 @@
+// Four channels at a time: RGBA as one value. Everything here is inlined into the kernel of one processor.
+#pragma once
+
+#ifndef VARVE_ISA
+#error "lanes.h belongs into files that are compiled once per processor"
+#endif
+
+// Internal linkage and forced inlining: code compiled for a newer processor must never be shared with other files.
+#define VARVE_INLINE [[gnu::always_inline]] static inline
+
+namespace varve::VARVE_ISA {
+
+typedef float Float4 __attribute__((vector_size(16)));
+typedef double Double4 __attribute__((vector_size(32)));
+typedef long long Mask4 __attribute__((vector_size(32)));
+
+VARVE_INLINE Float4 load(const float* p) {
+  Float4 v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
+VARVE_INLINE void store(float* p, Float4 v) { __builtin_memcpy(p, &v, sizeof v); }
+VARVE_INLINE Float4 splat(float v) { return Float4{v, v, v, v}; }
+VARVE_INLINE Double4 splat(double v) { return Double4{v, v, v, v}; }
+VARVE_INLINE Double4 widen(Float4 v) { return __builtin_convertvector(v, Double4); }
+VARVE_INLINE Float4 narrow(Double4 v) { return __builtin_convertvector(v, Float4); }
+VARVE_INLINE Float4 least(Float4 a, Float4 b) { return a < b ? a : b; }
+VARVE_INLINE Float4 greatest(Float4 a, Float4 b) { return a > b ? a : b; }
+VARVE_INLINE Double4 least(Double4 a, Double4 b) { return a < b ? a : b; }
+VARVE_INLINE Double4 greatest(Double4 a, Double4 b) { return a > b ? a : b; }
+VARVE_INLINE Double4 magnitude(Double4 v) { return v < 0.0 ? -v : v; }
+VARVE_INLINE double biggest(double a, double b) { return a > b ? a : b; }
+VARVE_INLINE double smallest(double a, double b) { return a < b ? a : b; }
+
+/// True when no lane is NaN or infinite.
+VARVE_INLINE bool finite(Float4 v) {
+  const Float4 zero = v - v;  // NaN in every lane that is not finite
+  return zero[0] == 0 && zero[1] == 0 && zero[2] == 0 && zero[3] == 0;
+}
+VARVE_INLINE bool all_true(Mask4 m) { return (m[0] & m[1] & m[2] & m[3]) != 0; }
+
+/// R G B A to Y Co Cg A: an orthogonal-ish rotation with powers of two, so scaling the light scales it exactly.
+VARVE_INLINE Float4 ycocg_from_rgb(Float4 c) {
+  return Float4{c[0] * 0.25f + c[2] * 0.25f + c[1] * 0.5f, c[0] * 0.5f - c[2] * 0.5f,
+                c[1] * 0.5f - (c[0] * 0.25f + c[2] * 0.25f), c[3]};
+}
+VARVE_INLINE Double4 rgb_from_ycocg(Double4 c) {
+  const double t = c[0] - c[2];
+  return Double4{t + c[1], c[0] + c[2], t - c[1], c[3]};
+}
+
+}  // namespace varve::VARVE_ISA

@@ -1,0 +1,149 @@
+// varve_psnr REF.####.exr TEST.####.exr FRAMES [REF_LAYER [TEST_LAYER]]
+// Distance of a sequence from its reference: peak 1, squared difference over R, G, B of all frames together,
+// negative values count as 0. Two figures: tone-mapped x / (1 + x), and linear clipped to [0, 1].
+// Layers are channel prefixes without the last dot ("" for bare R, G, B); "auto" finds the only one there is.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+
+namespace {
+
+struct Rgb {
+  Imath::Box2i window;
+  std::vector<float> planes[3];
+};
+
+struct Sums {
+  double tone = 0, linear = 0;
+  std::size_t values = 0, not_finite = 0;
+};
+
+std::string with_frame(const std::string& pattern, int frame) {
+  const std::size_t first = pattern.find('#');
+  if (first == std::string::npos) return pattern;
+  const std::size_t end = std::min(pattern.find_first_not_of('#', first), pattern.size());
+  std::string number = std::to_string(frame);
+  const std::size_t digits = end - first == 1 ? 4 : end - first;
+  if (number.size() < digits) number.insert(0, digits - number.size(), '0');
+  return pattern.substr(0, first) + number + pattern.substr(end);
+}
+
+std::vector<int> frames_of(const std::string& text) {
+  const std::size_t dash = text.find('-', 1);
+  const int first = std::stoi(text), last = dash == std::string::npos ? first : std::stoi(text.substr(dash + 1));
+  std::vector<int> frames;
+  for (int f = first; f <= last; ++f) frames.push_back(f);
+  return frames;
+}
+
+std::string joined(const std::string& layer, const char* component) {
+  return layer.empty() ? component : layer + "." + component;
+}
+
+bool has_rgb(const Imf::ChannelList& channels, const std::string& layer) {
+  return channels.findChannel(joined(layer, "R")) && channels.findChannel(joined(layer, "G")) &&
+         channels.findChannel(joined(layer, "B"));
+}
+
+/// The layer itself, or for "auto" the bare one, or else the only one with R, G and B.
+std::optional<std::string> layer_in(const Imf::ChannelList& channels, const std::string& wanted) {
+  if (wanted != "auto") return has_rgb(channels, wanted) ? std::optional(wanted) : std::nullopt;
+  if (has_rgb(channels, "")) return "";
+  std::vector<std::string> found;
+  for (auto c = channels.begin(); c != channels.end(); ++c) {
+    const std::string name = c.name();
+    if (name.size() < 3 || name.substr(name.size() - 2) != ".R") continue;
+    if (has_rgb(channels, name.substr(0, name.size() - 2))) found.push_back(name.substr(0, name.size() - 2));
+  }
+  if (found.size() > 1) throw std::runtime_error("several layers have R, G, B: name one, such as " + found[0]);
+  return found.empty() ? std::nullopt : std::optional(found[0]);
+}
+
+Rgb read_rgb(const std::string& path, const std::string& wanted) {
+  Imf::MultiPartInputFile file(path.c_str());
+  for (int p = 0; p < file.parts(); ++p) {
+    const auto layer = layer_in(file.header(p).channels(), wanted);
+    if (!layer) continue;
+    Rgb image{file.header(p).dataWindow(), {}};
+    const std::size_t width = std::size_t(image.window.max.x - image.window.min.x + 1);
+    const std::size_t height = std::size_t(image.window.max.y - image.window.min.y + 1);
+    Imf::FrameBuffer buffer;
+    const char* components[] = {"R", "G", "B"};
+    for (int c = 0; c < 3; ++c) {
+      image.planes[c].resize(width * height);
+      buffer.insert(joined(*layer, components[c]), Imf::Slice::Make(Imf::FLOAT, image.planes[c].data(), image.window,
+                                                                    sizeof(float), sizeof(float) * width));
+    }
+    Imf::InputPart part(file, p);
+    part.setFrameBuffer(buffer);
+    part.readPixels(image.window.min.y, image.window.max.y);
+    return image;
+  }
+  throw std::runtime_error(path + " has no R, G, B in layer \"" + wanted + "\"");
+}
+
+void add_squares(const Rgb& reference, const Rgb& test, Sums& sums) {
+  for (int c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < reference.planes[c].size(); ++i) {
+      const double r = std::max(0.0, double(reference.planes[c][i])), t = std::max(0.0, double(test.planes[c][i]));
+      ++sums.values;
+      if (!std::isfinite(test.planes[c][i])) {
+        ++sums.not_finite;  // the worst there is, so that it cannot improve a figure
+        sums.tone += 1;
+        sums.linear += 1;
+        continue;
+      }
+      const double tone = t / (1 + t) - r / (1 + r), linear = std::min(1.0, t) - std::min(1.0, r);
+      sums.tone += tone * tone;
+      sums.linear += linear * linear;
+    }
+}
+
+double decibels(double squares, std::size_t values) { return -10 * std::log10(squares / double(values)); }
+
+void print(const std::string& label, const Sums& s) {
+  std::printf("%-12s tone %6.2f dB  linear %6.2f dB  not finite %zu\n", label.c_str(), decibels(s.tone, s.values),
+              decibels(s.linear, s.values), s.not_finite);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    if (words.size() < 3 || words.size() > 5)
+      throw std::runtime_error("usage: varve_psnr REF.####.exr TEST.####.exr FIRST-LAST [REF_LAYER [TEST_LAYER]]");
+    const std::string ref_layer = words.size() > 3 ? words[3] : "auto",
+                      test_layer = words.size() > 4 ? words[4] : "auto";
+    Sums total;
+    for (int frame : frames_of(words[2])) {
+      const Rgb reference = read_rgb(with_frame(words[0], frame), ref_layer);
+      const Rgb test = read_rgb(with_frame(words[1], frame), test_layer);
+      if (reference.window != test.window)
+        throw std::runtime_error("data windows differ in frame " + std::to_string(frame));
+      Sums one;
+      add_squares(reference, test, one);
+      print("frame " + std::to_string(frame), one);
+      total.tone += one.tone;
+      total.linear += one.linear;
+      total.values += one.values;
+      total.not_finite += one.not_finite;
+    }
+    print("all", total);
+    return total.not_finite ? 1 : 0;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "varve_psnr: %s\n", e.what());
+    return 2;
+  }
+}
