@@ -67,6 +67,9 @@ struct ReadLimits {
 /// header, or beyond the limits.
 FileHeader read_header(const std::string& path, const ReadLimits& limits = {});
 
+/// True for a readable file whose chunk tables are complete and point into the file: nothing was cut off.
+bool has_every_chunk(const std::string& path);
+
 const char* name_of(Compression compression);
 const char* name_of(Storage storage);
 const char* name_of(PixelType type);
