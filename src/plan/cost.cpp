@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <set>
-#include <thread>
 
+#include "base/parallel.h"
 #include "diagnose/aov.h"
 
 namespace varve {
@@ -136,8 +136,7 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
     const double motion = !plan.use_motion ? 0 : subject.backward ? kMotion : subject.forward ? kMotion + kInvert : 0;
     nanoseconds += double(pixels_of(info, subject)) * (per_pixel + motion);
   }
-  const unsigned processors = std::max(1u, std::thread::hardware_concurrency());
-  return nanoseconds * 1e-9 / double(threads > 0 ? unsigned(threads) : processors);
+  return nanoseconds * 1e-9 / double(threads > 0 ? threads : available_processors());
 }
 
 }  // namespace varve
