@@ -11,7 +11,6 @@
 #include <vector>
 
 namespace varve {
-namespace {
 
 int available_processors() {
   cpu_set_t set;
@@ -19,8 +18,6 @@ int available_processors() {
   if (sched_getaffinity(0, sizeof set, &set) == 0) return std::max(1, CPU_COUNT(&set));
   return std::max(1, int(std::thread::hardware_concurrency()));
 }
-
-}  // namespace
 
 struct Workers::Pool {
   using Item = std::function<void(std::size_t, int)>;

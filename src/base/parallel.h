@@ -7,6 +7,9 @@
 
 namespace varve {
 
+/// Processors this process may run on, at least 1.
+int available_processors();
+
 /// A fixed set of threads that live as long as the object; the calling thread is one of them.
 /// Work items must be independent: nothing here depends on which thread runs an item or when,
 /// so results are the same for any count. The exception of the lowest item is rethrown.

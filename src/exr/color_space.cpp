@@ -121,16 +121,17 @@ auto made_from(const NamedConfig& from, const std::string& what, const Make& mak
   }
 }
 
-/// Only matrices without offsets: scaling a color by its alpha then commutes with the conversion.
+/// Only matrices without offsets, and without alpha in the colors: scaling by alpha then commutes with the conversion.
 bool is_linear(const ocio::ConstProcessorRcPtr& processor) {
   const ocio::GroupTransformRcPtr group = processor->getOptimizedProcessor(kQuality)->createGroupTransform();
   for (int i = 0; i < group->getNumTransforms(); ++i) {
     const auto matrix = ocio::DynamicPtrCast<const ocio::MatrixTransform>(group->getTransform(i));
     if (!matrix) return false;
-    double offset[4];
+    double offset[4], m44[16];
     matrix->getOffset(offset);
-    for (double value : offset)
-      if (value != 0) return false;
+    matrix->getMatrix(m44);
+    for (int row = 0; row < 3; ++row)
+      if (offset[row] != 0 || m44[4 * row + 3] != 0) return false;
   }
   return true;
 }
