@@ -1,1 +1,52 @@
-int main() { return 2; }
+// The program: runs the command line and turns whatever goes wrong into one sentence and an exit code.
+#include <malloc.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "commands.h"
+
+namespace {
+
+/// Planes and codec state are allocated again for every frame. glibc would map and unmap them each time, and every page
+/// would be faulted in anew; 32 MiB is the greatest threshold it takes.
+void keep_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 512 << 20);
+  mallopt(M_TOP_PAD, 16 << 20);
+#endif
+}
+
+int fail(varve::ExitCode code, const std::string& sentence) {
+  std::fputs(("varve: error: " + sentence + "\n").c_str(), stderr);
+  return int(code);
+}
+
+/// A full disk shows only here. A reader that went away wanted no more: a quiet end.
+int flush_output(int code) {
+  if (std::fflush(stdout) == 0 || errno == EPIPE) return code;
+  return fail(varve::ExitCode::output, std::string("standard output cannot be written: ") + std::strerror(errno));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  keep_memory();
+  try {
+    return flush_output(varve::cli::run(std::vector<std::string>(argv + (argc > 0), argv + argc)));
+  } catch (const varve::Failure& failure) {
+    return fail(failure.code(), failure.what());
+  } catch (const std::bad_alloc&) {
+    return fail(varve::ExitCode::input,
+                "memory ran out; resolve fewer layers at once with --layer, or use a machine with more memory");
+  } catch (const std::exception& exception) {
+    return fail(varve::ExitCode::self_check, std::string("something happened that the program does not expect (") +
+                                                 exception.what() + "); please report it with the command line");
+  }
+}

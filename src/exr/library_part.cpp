@@ -12,9 +12,9 @@
 
 #include "base/error.h"
 #include "exr/container.h"
+#include "exr/library_slice.h"
 
 namespace varve {
-namespace {
 
 Imf::PixelType library_type(PixelType type) {
   switch (type) {
@@ -27,18 +27,16 @@ Imf::PixelType library_type(PixelType type) {
   }
 }
 
-// The library addresses pixels from (0, 0) of the display window; the base may lie outside the plane.
-Imf::Slice slice_of(RawPlane& plane) {
+Imf::Slice library_slice(const RawPlane& plane) {
   const std::ptrdiff_t x_stride = std::ptrdiff_t(bytes_per_pixel(plane.type)), y_stride = plane.storage.stride();
+  // Pixels are addressed from (0, 0) of the display window; that base may lie outside the plane.
   const std::ptrdiff_t back = std::ptrdiff_t(plane.window.x0 / plane.x_sampling) * x_stride +
                               std::ptrdiff_t(plane.window.y0 / plane.y_sampling) * y_stride;
-  char* origin = reinterpret_cast<char*>(plane.row(0));
+  char* origin = reinterpret_cast<char*>(const_cast<std::byte*>(plane.row(0)));
   char* base = reinterpret_cast<char*>(reinterpret_cast<std::intptr_t>(origin) - back);
   return Imf::Slice(library_type(plane.type), base, std::size_t(x_stride), std::size_t(y_stride), plane.x_sampling,
                     plane.y_sampling);
 }
-
-}  // namespace
 
 std::string library_reason(const char* what) {
   // "... image file "x". Reason" -> "Reason"; the path is in our own sentence already.
@@ -58,7 +56,7 @@ void read_part_by_library(const FileHeader& header, int part, std::vector<RawPla
     Imf::MultiPartInputFile file(header.path.c_str(), threads);
     Imf::FrameBuffer frame;
     for (std::size_t c = 0; c < planes.size(); ++c)
-      if (!planes[c].empty()) frame.insert(wanted.channels[c].name, slice_of(planes[c]));
+      if (!planes[c].empty()) frame.insert(wanted.channels[c].name, library_slice(planes[c]));
     if (wanted.storage == Storage::tiled) {
       Imf::TiledInputPart tiles(file, part);
       tiles.setFrameBuffer(frame);

@@ -1,0 +1,120 @@
+// The table of commands, and the way from a command line to one of them.
+#include "commands.h"
+
+#include <cstdio>
+
+#include "base/error.h"
+#include "help.h"
+#include "option.h"
+
+namespace varve::cli {
+namespace {
+
+Value<Settings> input_pattern() {
+  return {[](Settings& s, std::string_view text) {
+            s.job.input.color = SequencePattern::parse(text);
+            return true;
+          },
+          nullptr,
+          "the files to read, such as shot.####.exr",
+          {}};
+}
+
+Value<Settings> help_topic() {
+  return {[](Settings& s, std::string_view text) {
+            s.topic = text;
+            return !text.empty();
+          },
+          nullptr,
+          "a command or a topic",
+          {}};
+}
+
+}  // namespace
+
+std::vector<Command> command_table() {
+  return {
+      {"resolve",
+       kResolve,
+       "IN",
+       "resolve a rendered sequence over time",
+       "Reads the frames of IN one after the other, brings the result of the frames before along the motion vectors, "
+       "holds it to what the present frame allows, and blends both. Every requested frame is written.\n"
+       "Channels are found by their names; `varve probe` shows which are found and what is assumed. Channels that are "
+       "not resolved, attributes, views, and data windows are kept. Files appear under their names only when they are "
+       "complete.",
+       input_pattern(),
+       run_resolve,
+       true,
+       {{"varve resolve shot.####.exr -o out/shot.####.exr", "All frames on disk with the default preset."},
+        {"varve resolve shot.####.exr -o out/shot.####.exr -f 101-150 --preroll 20 --resume",
+         "One chunk of a farm job: 20 frames warm the history up, finished frames are skipped."},
+        {"varve resolve shot.####.exr -o out/shot.####.exr --convention nuke --gamma 1.5 --aov count,clip",
+         "Vectors as Nuke writes them, a wider box, two diagnostic planes beside the color."}}},
+      {"probe",
+       kProbe,
+       "IN",
+       "show what a sequence holds and how it would be resolved",
+       "Reads the headers of IN and prints frames, gaps, parts, windows, the channels with their roles, the motion "
+       "convention, jitter and cameras, and the plan: each pass with the reason why it runs or not, memory and time.",
+       input_pattern(),
+       run_probe,
+       true,
+       {{"varve probe shot.####.exr", "Headers only; quick."},
+        {"varve probe shot.####.exr --pixels 3 --json", "With the ranges of three frames, for a script."}}},
+      {"help", kHelp, "[TOPIC]", "explain a command or a topic",
+       "TOPIC is a command, or one of " + topic_names() + ". Without it the program itself is explained.", help_topic(),
+       run_help},
+      {"version",
+       kVersion,
+       "",
+       "print the version",
+       "Prints the name and the version of the program.",
+       {},
+       run_version},
+  };
+}
+
+int run(std::span<const std::string> arguments) {
+  const std::vector<Command> commands = command_table();
+  if (arguments.empty()) {
+    std::fputs(usage_text().c_str(), stderr);
+    return int(ExitCode::usage);
+  }
+  Settings none;
+  const std::string& first = arguments[0];
+  if (first == "-h" || first == "--help" || first == "--help=all") return run_help(none);
+  if (first == "--version") return run_version(none);
+  const Command* command = find_command(commands, first);
+  if (!command) {
+    std::vector<std::string> names;
+    for (const Command& known : commands) names.emplace_back(known.name);
+    const std::string nearest = nearest_word(first, names);
+    throw Failure(ExitCode::usage,
+                  (first.starts_with('-') ? "a command comes first, and " + first + " is none"
+                                          : "there is no command \"" + first + "\"") +
+                      (nearest.empty() ? "; `varve help` lists what there is" : "; did you mean " + nearest + "?"));
+  }
+  const std::vector<Option> options = options_of(command->bit);
+  Parsed parsed = parse(*command, options, arguments.subspan(1));
+  if (parsed.help) {
+    std::fputs(command_text(*command, options, parsed.help_all).c_str(), stdout);
+    return int(ExitCode::done);
+  }
+  return command->run(parsed.settings);
+}
+
+int run_version(Settings&) {
+  std::printf("varve %s\n", version());
+  return int(ExitCode::done);
+}
+
+void finish_job(Settings& settings) {
+  for (const auto& files : {settings.depth_files, settings.motion_files})
+    if (files) settings.job.input.roles.push_back(*files);
+  OutputRequest& request = settings.job.request;
+  request.diagnostics_apart = settings.job.diagnostics.has_value();
+  if (request.diagnostics_apart && request.aovs.empty()) request.aovs = {"all"};
+}
+
+}  // namespace varve::cli

@@ -1,0 +1,76 @@
+#include "option_values.h"
+
+#include <array>
+
+#include "diagnose/aov.h"
+#include "plan/preset.h"
+
+namespace varve::cli {
+
+Value<Settings> map_value() {
+  return {[](Settings& s, std::string_view text) {
+            const std::size_t equals = text.find('=');
+            constexpr std::array<std::string_view, 9> roles = {"R",        "G",        "B",         "A",        "depth",
+                                                               "motion.x", "motion.y", "forward.x", "forward.y"};
+            if (equals == std::string_view::npos || equals + 1 == text.size()) return false;
+            const std::string_view role = text.substr(0, equals);
+            if (std::ranges::find(roles, role) == roles.end()) return false;
+            s.job.roles.map.emplace_back(role, text.substr(equals + 1));
+            return true;
+          },
+          nullptr,
+          "role=channel with one of the roles R, G, B, A, depth, motion.x, motion.y, forward.x, forward.y",
+          {}};
+}
+
+Value<Settings> aovs_value() {
+  std::string names;
+  Value<Settings> value = list(
+      [](Settings& s, const std::string& name) {
+        if (name != "all" && !find_aov(name)) return false;
+        if (std::ranges::find(s.job.request.aovs, name) == s.job.request.aovs.end()) s.job.request.aovs.push_back(name);
+        return true;
+      },
+      "");
+  value.choices.push_back({"all", "every plane"});
+  for (const Aov& aov : diagnostic_aovs()) {
+    value.choices.push_back({std::string(aov.name), std::string(aov.meaning)});
+    names += (names.empty() ? "" : ", ") + std::string(aov.name);
+  }
+  value.allowed = "all, or a list with commas of " + names;
+  return value;
+}
+
+Value<Settings> preset_value() {
+  Value<Settings> value;
+  for (const Preset& row : presets()) value.choices.push_back({std::string(row.name), std::string(row.description)});
+  value.allowed = choices_text(value.choices);
+  value.read = [](Settings& s, std::string_view name) {
+    const Preset* row = find_preset(name);
+    if (row) s.job.parameters = preset_parameters(*row);
+    return row != nullptr;
+  };
+  value.show = [](const Settings& s) { return s.job.parameters.preset; };
+  return value;
+}
+
+Value<Settings> convention_value() {
+  Value<Settings> value;
+  value.choices.push_back({"auto", "told by the names of the channels; refused where the names do not tell"});
+  for (const MotionConvention& row : motion_conventions())
+    value.choices.push_back({std::string(row.name), std::string(row.note)});
+  value.allowed = choices_text(value.choices);
+  value.read = [](Settings& s, std::string_view text) {
+    if (text != "auto" && !find_motion_convention(text)) return false;
+    s.job.roles.convention = text;
+    return true;
+  };
+  value.show = [](const Settings& s) { return s.job.roles.convention; };
+  return value;
+}
+
+Value<Settings> knob_value(const Knob& knob) {
+  return inside<Settings>(knob.value, [](auto& s) -> auto& { return s.job.parameters; });
+}
+
+}  // namespace varve::cli

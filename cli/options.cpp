@@ -1,0 +1,267 @@
+// THE table of options. Names, ranges and texts of the parameters come from knobs().
+#include "option_values.h"
+
+namespace varve::cli {
+namespace {
+
+constexpr unsigned kBoth = kResolve | kProbe;
+
+constexpr Word<bool> kKeeps[] = {
+    {"all", true, "other channels and parts pass through, bit for bit"},
+    {"none", false, "only what was resolved is written"},
+};
+constexpr Word<std::optional<Compression>> kCompressions[] = {
+    {"keep", std::nullopt, "as the input; ZIP where that is lossy"},
+    {"none", Compression::none, "largest and fastest"},
+    {"rle", Compression::rle, "lossless, run lengths"},
+    {"zips", Compression::zips, "lossless, deflate by single lines"},
+    {"zip", Compression::zip, "lossless, deflate by 16 lines"},
+    {"piz", Compression::piz, "lossless wavelet, good with noise"},
+    {"pxr24", Compression::pxr24, "lossy for 32-bit floats, which keep 24 bits"},
+    {"b44", Compression::b44, "lossy, fixed rate"},
+    {"b44a", Compression::b44a, "lossy, smaller in flat areas"},
+    {"dwaa", Compression::dwaa, "lossy, by 32 lines"},
+    {"dwab", Compression::dwab, "lossy, by 256 lines"},
+};
+constexpr Word<ProgressStyle> kProgressStyles[] = {
+    {"auto", ProgressStyle::automatic, "bar on a terminal, plain otherwise"},
+    {"bar", ProgressStyle::bar, "one line that is drawn again, with the time left"},
+    {"plain", ProgressStyle::plain, "one line for each frame, with PROGRESS: nn%"},
+    {"openjd", ProgressStyle::openjd, "openjd_progress and openjd_status lines"},
+    {"json", ProgressStyle::json, "one JSON object on a line for each event"},
+    {"none", ProgressStyle::none, "warnings only"},
+};
+constexpr Word<MotionUnit> kUnits[] = {
+    {"pixel", MotionUnit::pixel, "pixels"},
+    {"unit", MotionUnit::unit, "fractions of the display window"},
+    {"ndc", MotionUnit::ndc, "-1 to 1 across the display window"},
+};
+constexpr Word<MotionDirection> kDirections[] = {
+    {"previous", MotionDirection::previous, "vectors lead to the previous frame"},
+    {"next", MotionDirection::next, "vectors lead to the next frame"},
+};
+constexpr Word<double> kSigns[] = {
+    {"1", 1.0, "as stored"},
+    {"-1", -1.0, "turned round"},
+};
+constexpr Word<std::string_view> kShells[] = {{"bash", "bash", "source it, or install it as completions/varve"}};
+
+constexpr auto kBasic = Tier::basic, kAdvanced = Tier::advanced, kExpert = Tier::expert;
+
+void add_file_options(std::vector<Option>& rows) {
+  const std::string group = "Input and output";
+  const auto add = [&rows](Option option) -> Option& { return rows.emplace_back(std::move(option)); };
+  add({"output", 'o', "PATTERN", kResolve, kBasic, group, "Files to write, never the input itself. Required.",
+       pattern([](auto& s) -> auto& { return s.job.output; })})
+      .completes = Completes::files;
+  add({"frames", 'f', "LIST", kBoth, kBasic, group,
+       "Frames to work on; without it all files that match IN. Negative frames are written as in -10--5.",
+       frames([](auto& s) -> auto& { return s.job.frames; })});
+  add({"preroll", 0, "FRAMES", kResolve, kAdvanced, group,
+       "Frames read before the first one written, so that a chunk of a shot starts with history. 0 starts without.",
+       number([](auto& s) -> auto& { return s.job.preroll; }, {0, 100000})});
+  add({"cuts", 0, "LIST", kResolve, kBasic, group, "First frames of new shots; history does not cross them.",
+       frames([](auto& s) -> auto& { return s.job.cuts; })});
+  add({"resume", 0, "", kResolve, kBasic, group,
+       "Skip frames whose output is complete and was made with the same parameters.",
+       flag([](auto& s) -> auto& { return s.job.resume; })});
+  add({"keep", 0, "WHICH", kResolve, kAdvanced, group, "What happens to channels that are not resolved.",
+       word(
+           [](auto& s) -> auto& { return s.job.request.keep_channels; }, kKeeps)});
+  add({"compression", 0, "METHOD", kResolve, kAdvanced, group, "Compression of the files written.",
+       word(
+           [](auto& s) -> auto& { return s.job.compression; }, kCompressions)});
+  add({"zip-level", 0, "LEVEL", kResolve, kExpert, group,
+       "Effort of ZIP and ZIPS. 1 is fastest, 9 makes the smallest files.",
+       number([](auto& s) -> auto& { return s.job.zip_level; }, {1, 9})});
+}
+
+void add_channel_options(std::vector<Option>& rows) {
+  const std::string group = "Channels";
+  const auto add = [&rows](Option option) -> Option& { return rows.emplace_back(std::move(option)); };
+  add({"layer", 'l', "LIST", kBoth, kBasic, group, "Layers to resolve; without it the main layer of each view.",
+       list(
+           [](Settings& s, const std::string& layer) {
+             s.job.roles.layers.push_back(layer);
+             return true;
+           },
+           "all, or names of layers with commas between")})
+      .repeats = true;
+  add({"map", 0, "ROLE=CHANNEL", kBoth, kAdvanced, group,
+       "Name the channel of a role, where its name does not tell. motion leads to the previous frame, forward to the "
+       "next.",
+       map_value()})
+      .repeats = true;
+  add({"depth-file", 0, "PATTERN", kBoth, kAdvanced, group, "Files with the depth, where it is not in IN.",
+       pattern([](auto& s) -> auto& { return s.depth_files; })})
+      .completes = Completes::files;
+  add({"motion-file", 0, "PATTERN", kBoth, kAdvanced, group, "Files with the motion vectors, where they are not in IN.",
+       pattern([](auto& s) -> auto& { return s.motion_files; })})
+      .completes = Completes::files;
+  add({"jitter", 0, "SOURCE", kBoth, kAdvanced, group,
+       "Where in its pixel each frame was sampled. auto reads the header; a CSV file has the columns frame,jx,jy, "
+       "sample "
+       "position minus pixel center in pixels, y down.",
+       text(
+           [](auto& s) -> auto& { return s.job.jitter; }, "auto, none, a CSV file or a sequence such as halton23:16")})
+      .completes = Completes::files;
+}
+
+void add_motion_options(std::vector<Option>& rows) {
+  const std::string group = "Motion and depth";
+  const auto add = [&rows, group](const char* name, const char* metavar, const char* help, Value<Settings> value) {
+    rows.push_back({name, 0, metavar, kBoth, kExpert, group, help, std::move(value)});
+  };
+  add("convention", "NAME", "How the renderer wrote its motion vectors; see `varve help conventions`.", convention_value());
+  rows.back().tier = kBasic;
+  rows.back().topic = "conventions";
+  add("motion-bias", "VALUE",
+      "Subtracted from the stored vector before anything else. Without it as the convention says.",
+      overriding(
+          number([](auto& s) -> auto& { return s.job.roles.encoding.bias; }, {-1e9, 1e9}),
+          [](auto& s) -> auto& { return s.job.roles.override_bias; }));
+  add("motion-scale", "FACTOR", "Multiplies the stored vector. Without it as the convention says.",
+      overriding(
+          number([](auto& s) -> auto& { return s.job.roles.encoding.scale; }, {0, 1e9, true}),
+          [](auto& s) -> auto& { return s.job.roles.override_scale; }));
+  add("motion-sign-x", "SIGN", "Whether the stored x axis points right. Without it as the convention says.",
+      overriding(
+          word(
+              [](auto& s) -> auto& { return s.job.roles.encoding.sign_x; }, kSigns),
+          [](auto& s) -> auto& { return s.job.roles.override_sign_x; }));
+  add("motion-sign-y", "SIGN", "Whether the stored y axis points down. Without it as the convention says.",
+      overriding(
+          word(
+              [](auto& s) -> auto& { return s.job.roles.encoding.sign_y; }, kSigns),
+          [](auto& s) -> auto& { return s.job.roles.override_sign_y; }));
+  add("motion-unit", "UNIT", "Unit of the stored vector. Without it as the convention says.",
+      overriding(
+          word(
+              [](auto& s) -> auto& { return s.job.roles.encoding.unit; }, kUnits),
+          [](auto& s) -> auto& { return s.job.roles.override_unit; }));
+  add("motion-direction", "WHICH", "Where the vectors lead. Without it as the convention says.",
+      overriding(
+          word(
+              [](auto& s) -> auto& { return s.job.roles.encoding.direction; }, kDirections),
+          [](auto& s) -> auto& { return s.job.roles.override_direction; }));
+  add("shutter", "FRAMES",
+      "Part of a frame that the stored vectors span; they are divided by it. 1 spans the whole frame. Without it as "
+      "the "
+      "convention says.",
+      overriding(
+          number([](auto& s) -> auto& { return s.job.roles.encoding.shutter; }, {0, 1000, true}),
+          [](auto& s) -> auto& { return s.job.roles.override_shutter; }));
+}
+
+void add_parameter_options(std::vector<Option>& rows) {
+  rows.push_back({"preset", 'p', "NAME", kResolve, kBasic, "History",
+                  "Set of parameters to start from; options given by name override it. See `varve help presets`.",
+                  preset_value()});
+  rows.back().first = true;
+  rows.back().topic = "presets";
+  for (const Knob& knob : knobs()) {
+    // What says how to read the input matters to probe as well.
+    const unsigned commands = knob.name == "depth-kind" ? kBoth : unsigned(kResolve);
+    rows.push_back({std::string(knob.name), 0, std::string(knob.metavar), commands, knob.tier, std::string(knob.group),
+                    std::string(knob.meaning), knob_value(knob)});
+  }
+}
+
+void add_diagnostic_options(std::vector<Option>& rows) {
+  const std::string group = "Diagnostics";
+  const auto add = [&rows](Option option) -> Option& { return rows.emplace_back(std::move(option)); };
+  add({"aov", 0, "LIST", kResolve, kBasic, group, "Diagnostic planes to write into the output; see `varve help aovs`.",
+       aovs_value()})
+      .repeats = true;
+  rows.back().topic = "aovs";
+  add({"diagnostics", 0, "PATTERN", kResolve, kBasic, group,
+       "Write the diagnostic planes to these files instead of into the output; all of them without --aov.",
+       pattern([](auto& s) -> auto& { return s.job.diagnostics; })})
+      .completes = Completes::files;
+  add({"preview", 0, "FOLDER", kResolve, kAdvanced, group,
+       "Write PNG pictures of the color and of the diagnostic planes.",
+       text(
+           [](auto& s) -> auto& { return s.job.preview_folder; }, "a folder")})
+      .completes = Completes::folders;
+  add({"report", 0, "FILE", kResolve, kAdvanced, group,
+       "Write a JSON file with one row for each frame: times in seconds and counts of pixels.",
+       text(
+           [](auto& s) -> auto& { return s.report; }, "a file name")})
+      .completes = Completes::files;
+}
+
+void add_color_options(std::vector<Option>& rows) {
+  const std::string group = "Color";
+  const auto add = [&rows, group](const char* name, const char* metavar, Tier tier, const char* help,
+                                  Value<Settings> value) {
+    rows.push_back({name, 0, metavar, kResolve, tier, group, help, std::move(value)});
+  };
+  add("ocio", "CONFIG", kAdvanced, "OpenColorIO config. Without it the one that $OCIO names.",
+      text(
+          [](auto& s) -> auto& { return s.job.ocio_config; }, "the path of an OpenColorIO config"));
+  rows.back().completes = Completes::files;
+  add("from-space", "SPACE", kAdvanced,
+      "Color space of the input; the resolve works in the scene_linear role of the config.",
+      text(
+          [](auto& s) -> auto& { return s.job.from_space; }, "a color space of the config"));
+  add("to-space", "SPACE", kAdvanced, "Color space of the output.",
+      text(
+          [](auto& s) -> auto& { return s.job.to_space; }, "a color space of the config"));
+  add("display", "NAME", kExpert, "Display of the pictures of --preview. Without it the config's default.",
+      text(
+          [](auto& s) -> auto& { return s.job.display; }, "a display of the config"));
+  add("view", "NAME", kExpert, "View of that display. Without it the display's default.",
+      text(
+          [](auto& s) -> auto& { return s.job.view; }, "a view of the config"));
+}
+
+void add_run_options(std::vector<Option>& rows) {
+  const std::string group = "Running";
+  const auto add = [&rows](Option option) -> Option& { return rows.emplace_back(std::move(option)); };
+  add({"pixels", 0, "FRAMES", kProbe, kBasic, group,
+       "Read the pixels of this many frames, spread over the sequence, and print the range of each channel. 0 reads "
+       "headers only.",
+       number([](auto& s) -> auto& { return s.pixels; }, {0, 1000000})});
+  add({"json", 0, "", kProbe, kBasic, group, "Print JSON.", flag([](auto& s) -> auto& { return s.json; })});
+  add({"dry-run", 'n', "", kResolve, kBasic, group, "Check the input, print the plan and write nothing.",
+       flag([](auto& s) -> auto& { return s.dry_run; })});
+  add({"threads", 'j', "COUNT", kBoth, kAdvanced, group,
+       "Threads to use; 0 takes every processor. The output is the same for any count.",
+       number([](auto& s) -> auto& { return s.job.threads; }, {0, 1024})});
+  add({"progress", 0, "STYLE", kResolve, kBasic, group, "How progress is told, on standard error.",
+       word(
+           [](auto& s) -> auto& { return s.progress; }, kProgressStyles)});
+  add({"quiet", 'q', "", kResolve, kBasic, group, "No progress, no warnings, no summary.",
+       flag([](auto& s) -> auto& { return s.quiet; })});
+  add({"verbose", 'v', "", kResolve, kBasic, group, "Print the plan before the work starts.",
+       flag([](auto& s) -> auto& { return s.verbose; })});
+}
+
+void add_help_options(std::vector<Option>& rows) {
+  const std::string group = "Help";
+  rows.push_back({"all", 0, "", kHelp, kBasic, group, "Show all options of a command, the rare ones too.",
+                  flag([](auto& s) -> auto& { return s.all; })});
+  rows.push_back({"man", 0, "", kHelp, kBasic, group,
+                  "Print the manual page as roff; without a topic the one of varve.",
+                  flag([](auto& s) -> auto& { return s.man; })});
+  rows.push_back({"completion", 0, "SHELL", kHelp, kBasic, group, "Print a completion script.",
+                  word(
+                      [](auto& s) -> auto& { return s.completion; }, kShells)});
+}
+
+}  // namespace
+
+std::vector<Option> option_table() {
+  std::vector<Option> rows;
+  add_file_options(rows);
+  add_channel_options(rows);
+  add_parameter_options(rows);
+  add_motion_options(rows);
+  add_diagnostic_options(rows);
+  add_color_options(rows);
+  add_run_options(rows);
+  add_help_options(rows);
+  return rows;
+}
+
+}  // namespace varve::cli

@@ -1,0 +1,28 @@
+// varve probe.
+#include <cstdio>
+#include <vector>
+
+#include "base/error.h"
+#include "commands.h"
+#include "plan/describe.h"
+
+namespace varve::cli {
+
+int run_probe(Settings& settings) {
+  finish_job(settings);
+  const ResolveJob& job = settings.job;
+  SequenceInfo info;
+  const Plan plan = plan_sequence(job, info);
+  std::vector<ChannelStatistics> statistics;
+  if (settings.pixels > 0) {
+    Workers workers(job.threads);
+    statistics = measure_pixels(info, job.input, job.roles, parse_jitter_source(job.jitter), settings.pixels, workers);
+  }
+  const std::string text =
+      settings.json ? describe_json(info, plan, statistics) : describe_text(info, plan, statistics);
+  std::fputs(text.c_str(), stdout);
+  if (!text.ends_with('\n')) std::fputc('\n', stdout);
+  return int(ExitCode::done);
+}
+
+}  // namespace varve::cli

@@ -1,0 +1,169 @@
+#include "progress.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "json.h"
+
+namespace varve::cli {
+namespace {
+
+/// One call, so that the lines of several programs in one log do not mix.
+void put(const std::string& text) { std::fputs(text.c_str(), stderr); }
+
+std::string seconds_text(double seconds) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.3f s", std::clamp(seconds, 0.0, 1e9));
+  return buffer;
+}
+
+int percent(int done, int total) { return total > 0 ? int(100.0 * done / total) : 100; }
+
+int terminal_columns() {
+  winsize size = {};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+std::string count_text(std::size_t count, const char* what) { return ", " + std::to_string(count) + " " + what; }
+
+JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
+  return line.number("frame", report.frame)
+      .text("path", report.path)
+      .flag("written", report.written)
+      .flag("skipped", report.skipped)
+      .number("read_seconds", report.read_seconds)
+      .number("resolve_seconds", report.resolve_seconds)
+      .number("write_seconds", report.write_seconds)
+      .number("pixels", double(report.pixels))
+      .number("not_finite", double(report.not_finite))
+      .number("vectors_bad", double(report.vectors_bad))
+      .number("restarted", double(report.restarted))
+      .number("clipped", double(report.clipped))
+      .number("half_overflows", double(report.half_overflows))
+      .text("restart", report.restart);
+}
+
+}  // namespace
+
+std::string clock_text(double seconds) {
+  const long whole = std::lround(std::clamp(seconds, 0.0, 1e9));
+  char buffer[48];
+  if (whole < 3600)
+    std::snprintf(buffer, sizeof buffer, "%ld:%02ld", whole / 60, whole % 60);
+  else
+    std::snprintf(buffer, sizeof buffer, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
+  return buffer;
+}
+
+std::string frame_line(const FrameReport& report, int done, int total) {
+  std::string line = "frame " + std::to_string(report.frame) + ": ";
+  if (report.skipped) {
+    line += "complete already, skipped";
+  } else {
+    line += seconds_text(report.read_seconds) + " read, " + seconds_text(report.resolve_seconds) + " resolve, " +
+            seconds_text(report.write_seconds) + " write";
+    if (!report.written) line += ", for the history only";
+    if (!report.restart.empty()) line += ", restart (" + report.restart + ")";
+    if (report.not_finite > 0) line += count_text(report.not_finite, "pixels repaired that were not finite");
+    if (report.vectors_bad > 0) line += count_text(report.vectors_bad, "unusable vectors");
+    if (report.half_overflows > 0) line += count_text(report.half_overflows, "values beyond half held at 65504");
+  }
+  return line + ", PROGRESS: " + std::to_string(percent(done, total)) + "%";
+}
+
+std::string frame_json(const FrameReport& report) {
+  JsonLine line;
+  return add_frame(line, report).end();
+}
+
+Progress::Progress(ProgressStyle style, bool quiet)
+    : style_(style), quiet_(quiet), start_(std::chrono::steady_clock::now()) {
+  if (style_ == ProgressStyle::automatic) style_ = isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::plain;
+  if (quiet_) style_ = ProgressStyle::none;
+}
+
+double Progress::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void Progress::frame(const FrameReport& report, int done, int total) {
+  switch (style_) {
+    case ProgressStyle::bar:
+      draw(report, done, total);
+      break;
+    case ProgressStyle::plain:
+      put(frame_line(report, done, total) + "\n");
+      break;
+    case ProgressStyle::openjd:
+      put("openjd_status: " + frame_line(report, done, total) +
+          "\nopenjd_progress: " + std::to_string(percent(done, total)) + "\n");
+      break;
+    case ProgressStyle::json: {
+      JsonLine line;
+      put(add_frame(line.text("event", "frame"), report).number("done", done).number("total", total).end() + "\n");
+      break;
+    }
+    case ProgressStyle::automatic:
+    case ProgressStyle::none:
+      break;
+  }
+}
+
+void Progress::draw(const FrameReport& report, int done, int total) {
+  const double elapsed = seconds();
+  const double left = done > 0 ? elapsed / done * std::max(total - done, 0) : 0;
+  std::string tail = " " + std::to_string(done) + "/" + std::to_string(total) + "  frame " +
+                     std::to_string(report.frame) + "  " + seconds_text(done > 0 ? elapsed / done : 0) + "/frame  " +
+                     clock_text(left) + " left";
+  const int columns = terminal_columns() - 1;  // the last column would wrap
+  const int width = std::clamp(columns - int(tail.size()) - 2, 0, 40);
+  const int full = total > 0 ? int(double(width) * std::min(done, total) / total) : 0;
+  std::string line =
+      width > 3 ? "[" + std::string(std::size_t(full), '#') + std::string(std::size_t(width - full), '.') + "]" : "";
+  line += tail;
+  line.resize(std::min(line.size(), std::size_t(std::max(columns, 1))));
+  put("\r" + line + "\x1b[K");
+  on_bar_ = true;
+}
+
+void Progress::warning(const std::string& sentence) {
+  if (quiet_) return;
+  if (on_bar_) put("\r\x1b[K");
+  on_bar_ = false;
+  if (style_ == ProgressStyle::json)
+    put(JsonLine().text("event", "warning").text("sentence", sentence).end() + "\n");
+  else
+    put("varve: warning: " + sentence + "\n");
+}
+
+void Progress::leave_line() {
+  if (on_bar_) put("\n");
+  on_bar_ = false;
+}
+
+void Progress::summary(const ResolveSummary& summary) {
+  leave_line();
+  if (style_ == ProgressStyle::none) return;
+  if (style_ == ProgressStyle::json) {
+    put(JsonLine()
+            .text("event", "summary")
+            .number("frames_written", summary.frames_written)
+            .number("frames_skipped", summary.frames_skipped)
+            .flag("stopped", summary.stopped)
+            .number("seconds", seconds())
+            .end() +
+        "\n");
+    return;
+  }
+  std::string line = "varve: " + std::to_string(summary.frames_written) +
+                     (summary.frames_written == 1 ? " frame" : " frames") + " written";
+  if (summary.frames_skipped > 0) line += ", " + std::to_string(summary.frames_skipped) + " complete already";
+  line += " in " + clock_text(seconds());
+  if (summary.stopped) line += ", stopped as asked; --resume goes on from here";
+  put((style_ == ProgressStyle::openjd ? "openjd_status: " : "") + line + "\n");
+}
+
+}  // namespace varve::cli

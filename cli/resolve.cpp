@@ -1,0 +1,63 @@
+// varve resolve.
+#include <cstdio>
+#include <vector>
+
+#include "base/error.h"
+#include "commands.h"
+#include "plan/describe.h"
+#include "progress.h"
+#include "report.h"
+#include "signals.h"
+
+namespace varve::cli {
+namespace {
+
+void check(const Settings& settings) {
+  if (settings.job.output.text().empty())
+    throw Failure(ExitCode::usage, "resolve needs --output: the files to write, such as out/shot.####.exr");
+}
+
+int describe(const Settings& settings) {
+  SequenceInfo info;
+  const Plan plan = plan_sequence(settings.job, info);
+  std::fputs(describe_text(info, plan, {}).c_str(), stdout);
+  return int(ExitCode::done);
+}
+
+}  // namespace
+
+int run_resolve(Settings& settings) {
+  check(settings);
+  finish_job(settings);
+  if (settings.dry_run) return describe(settings);
+
+  Progress progress(settings.progress, settings.quiet);
+  std::vector<std::string> rows;
+  ResolveEvents events;
+  if (settings.verbose)
+    events.planned = [](const SequenceInfo& info, const Plan& plan) {
+      std::fputs(describe_text(info, plan, {}).c_str(), stderr);
+    };
+  events.frame = [&](const FrameReport& report, int done, int total) {
+    progress.frame(report, done, total);
+    if (!settings.report.empty()) rows.push_back(frame_json(report));
+  };
+  events.warning = [&](const std::string& sentence) { progress.warning(sentence); };
+  events.should_stop = [] { return stop_signal() != 0; };
+
+  watch_signals();
+  ResolveSummary summary;
+  try {
+    summary = resolve_sequence(settings.job, events);
+  } catch (...) {
+    // What was written before stays valid, and so does its report.
+    progress.leave_line();
+    if (!rows.empty()) write_report(settings.report, rows);
+    throw;
+  }
+  progress.summary(summary);
+  if (!settings.report.empty()) write_report(settings.report, rows);
+  return summary.stopped ? 128 + stop_signal() : int(ExitCode::done);
+}
+
+}  // namespace varve::cli

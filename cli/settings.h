@@ -1,0 +1,30 @@
+// What the command line fills.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "resolve_sequence.h"
+
+namespace varve::cli {
+
+enum class ProgressStyle { automatic, bar, plain, openjd, json, none };
+
+struct Settings {
+  ResolveJob job;  ///< resolve; probe describes the same job
+
+  std::optional<SequencePattern> depth_files, motion_files;
+  bool dry_run = false;
+  ProgressStyle progress = ProgressStyle::automatic;
+  std::string report;  ///< path of the JSON report; empty: none
+  bool quiet = false, verbose = false;
+
+  int pixels = 0;  ///< frames whose pixels probe measures
+  bool json = false;
+
+  std::string topic;  ///< what help is asked about; empty: the program
+  bool all = false, man = false;
+  std::string completion;  ///< shell; empty: none
+};
+
+}  // namespace varve::cli

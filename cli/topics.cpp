@@ -1,0 +1,104 @@
+// The tables behind `varve help TOPIC` and the manual sections.
+#include "base/error.h"
+#include "diagnose/aov.h"
+#include "help.h"
+#include "plan/preset.h"
+
+namespace varve::cli {
+namespace {
+
+struct ExitMeaning {
+  ExitCode code;
+  std::string_view meaning;
+};
+constexpr ExitMeaning kExitMeanings[] = {
+    {ExitCode::done, "Done."},
+    {ExitCode::usage, "The command line is wrong: an unknown option, a bad value, something missing."},
+    {ExitCode::input, "Input is missing, unreadable or damaged."},
+    {ExitCode::inconsistent, "Inputs do not fit together, or what is asked for needs what is not there."},
+    {ExitCode::output, "Output could not be written. Files written before stay valid."},
+    {ExitCode::self_check, "A check of the program's own work failed. This is a defect of the program."},
+    {ExitCode::interrupted, "Interrupted (SIGINT). Files written before stay valid; --resume goes on."},
+    {ExitCode::terminated, "Terminated (SIGTERM), likewise."},
+};
+
+std::string encoding_text(std::string_view x, std::string_view y, const MotionEncoding& e, std::string_view where) {
+  std::string text = std::string(x) + ", " + std::string(y) + " lead to the " + std::string(where) + " frame";
+  text += e.unit == MotionUnit::pixel  ? " in pixels"
+          : e.unit == MotionUnit::unit ? " in fractions of the display window"
+                                       : " in -1 to 1 across the display window";
+  if (e.sign_x < 0) text += ", x turned round";
+  if (e.sign_y < 0) text += ", y turned round";
+  if (e.bias != 0) text += ", bias " + number_text(e.bias);
+  if (e.scale != 1) text += ", scale " + number_text(e.scale);
+  if (e.shutter != 1) text += ", shutter " + number_text(e.shutter);
+  return text + ". ";
+}
+
+Topic presets_topic() {
+  Topic topic{"presets", "PRESETS", "Sets of parameters for --preset. Options given by name override them.", {}};
+  for (const Preset& preset : presets())
+    topic.rows.emplace_back(preset.name, std::string(preset.description) + " Source: " + std::string(preset.source) +
+                                             ". Values: " + std::string(preset.values) + ".");
+  return topic;
+}
+
+Topic aovs_topic() {
+  Topic topic{
+      "aovs",
+      "DIAGNOSTIC PLANES",
+      "Planes for --aov and --diagnostics. The channels are named varve.NAME, under the layer that was resolved.",
+      {}};
+  for (const Aov& aov : diagnostic_aovs())
+    topic.rows.emplace_back(aov.name, std::string(aov.meaning) + " Unit: " + std::string(aov.unit) +
+                                          ". Range: " + std::string(aov.range) + ".");
+  return topic;
+}
+
+Topic rejection_topic() {
+  Topic topic{"rejection", "REJECTION BITS", "The plane reject is a sum of these.", {}};
+  for (const RejectName& bit : reject_bits())
+    topic.rows.emplace_back(std::to_string(bit.bit) + " " + std::string(bit.name), std::string(bit.meaning) + ".");
+  return topic;
+}
+
+Topic conventions_topic() {
+  Topic topic{
+      "conventions",
+      "CONVENTIONS",
+      "How renderers write motion vectors, for --convention. A vector is decoded as sign * ((v - bias) * scale) / "
+      "shutter. Evidence tells how far a row can be trusted.",
+      {}};
+  for (const MotionConvention& row : motion_conventions()) {
+    std::string text;
+    if (!row.backward_x.empty()) text += encoding_text(row.backward_x, row.backward_y, row.backward, "previous");
+    if (!row.forward_x.empty()) text += encoding_text(row.forward_x, row.forward_y, row.forward, "next");
+    if (!row.layers.empty()) text += "Layers: " + std::string(row.layers) + ". ";
+    text += row.evidence == Evidence::measured     ? "Evidence: measured. "
+            : row.evidence == Evidence::documented ? "Evidence: documented. "
+                                                   : "Evidence: unverified. ";
+    topic.rows.emplace_back(row.name, text + std::string(row.note));
+  }
+  return topic;
+}
+
+Topic exit_topic() {
+  Topic topic{"exit-codes", "EXIT STATUS", "", {}};
+  for (const ExitMeaning& row : kExitMeanings)
+    topic.rows.emplace_back(std::to_string(int(row.code)), std::string(row.meaning));
+  return topic;
+}
+
+}  // namespace
+
+std::vector<Topic> topics() {
+  return {presets_topic(), aovs_topic(), rejection_topic(), conventions_topic(), exit_topic()};
+}
+
+std::string topic_names() {
+  std::string names;
+  for (const Topic& topic : topics()) names += (names.empty() ? "" : ", ") + topic.name;
+  return names;
+}
+
+}  // namespace varve::cli

@@ -1,0 +1,139 @@
+#include "plan/knob.h"
+
+#include <array>
+
+namespace varve {
+namespace {
+
+constexpr Word<Dilation> kDilations[] = {
+    {"none", Dilation::none, "the pixel's own vector"},
+    {"nearest", Dilation::nearest, "the vector of the nearest depth among the 3x3 neighbors; needs depth"},
+    {"longest", Dilation::longest, "the longest vector among the 3x3 neighbors"},
+};
+constexpr Word<DepthKind> kDepthKinds[] = {
+    {"distance", DepthKind::distance, "larger is farther"},
+    {"inverse", DepthKind::inverse, "one over the distance, larger is nearer"},
+    {"negative", DepthKind::negative, "minus the distance, as along a camera's -Z"},
+};
+constexpr Word<AlphaRule> kAlphaRules[] = {
+    {"fixed", AlphaRule::fixed, "always --alpha"},
+    {"mean", AlphaRule::mean, "the plain mean of the n frames seen so far until 1/n falls to --alpha"},
+};
+constexpr Word<HistoryFilter> kHistoryFilters[] = {
+    {"bilinear", HistoryFilter::bilinear, "4 taps; soft, blurs a little more with every frame in motion"},
+    {"catmull-rom", HistoryFilter::catmull_rom, "16 taps; sharp"},
+    {"catmull-rom9", HistoryFilter::catmull_rom9, "9 bilinear taps with the result of 16"},
+    {"catmull-rom5", HistoryFilter::catmull_rom5, "5 bilinear taps without the corners, renormalized"},
+};
+constexpr Word<bool> kSwitches[] = {
+    {"on", true, "no overshoot beside bright edges"},
+    {"off", false, "the filter as it is"},
+};
+constexpr Word<Disocclusion> kDisocclusions[] = {
+    {"window", Disocclusion::window, "only where the previous position lies outside the data window"},
+    {"depth", Disocclusion::depth, "also where another surface lay there; needs depth"},
+};
+constexpr Word<SampleFilter> kSampleFilters[] = {
+    {"none", SampleFilter::none, "every sample of a pixel counts the same"},
+    {"tent", SampleFilter::tent, "falls linearly to zero at one pixel"},
+    {"gaussian", SampleFilter::gaussian, "Gaussian"},
+    {"blackman-harris", SampleFilter::blackman_harris, "narrow with very low side lobes, the usual film filter"},
+    {"mitchell", SampleFilter::mitchell, "Mitchell-Netravali, with negative lobes"},
+};
+constexpr Word<Box> kBoxes[] = {
+    {"none", Box::none, "history is used as it is"},
+    {"minmax", Box::minmax, "least and greatest of the neighbors"},
+    {"variance", Box::variance, "mean plus and minus --gamma standard deviations"},
+    {"variance-minmax", Box::variance_minmax, "the variance box cut by the minmax box"},
+};
+constexpr Word<int> kWindows[] = {
+    {"3", 3, "3x3 pixels: least ghosting"},
+    {"5", 5, "5x5 pixels"},
+    {"7", 7, "7x7 pixels: least noise"},
+};
+constexpr Word<BoxRule> kBoxRules[] = {
+    {"clip", BoxRule::clip, "along the line to the anchor; keeps the hue of the anchor's side"},
+    {"clamp", BoxRule::clamp, "each component by itself"},
+};
+constexpr Word<BoxAnchor> kBoxAnchors[] = {
+    {"present", BoxAnchor::present, "towards the present pixel, held inside the box"},
+    {"mean", BoxAnchor::mean, "towards the mean of the neighbors"},
+};
+constexpr Word<BoxSpace> kBoxSpaces[] = {
+    {"rgb", BoxSpace::rgb, "red, green, blue"},
+    {"ycocg", BoxSpace::ycocg, "luma and two chroma axes: a tighter box around natural colors"},
+};
+
+template <class At, class T, std::size_t N>
+Value<Parameters> word(At at, const Word<T> (&words)[N]) {
+  return word_value<Parameters>(at, std::span<const Word<T>>(words));
+}
+
+template <class At>
+Value<Parameters> number(At at, Range range) {
+  return number_value<Parameters>(at, range);
+}
+
+}  // namespace
+
+std::vector<Knob> knobs() {
+  constexpr auto basic = Tier::basic, advanced = Tier::advanced, expert = Tier::expert;
+  constexpr std::string_view motion = "Motion and depth", history = "History", rectify = "Rectification";
+  return {
+      {"dilation", "WORD", motion, advanced, "Whose vector a pixel follows.",
+       word(
+           [](auto& p) -> auto& { return p.motion.dilation; }, kDilations)},
+      {"max-motion", "PIXELS", motion, expert,
+       "Vectors longer than this many pixels count as unusable and restart their pixel.",
+       number([](auto& p) -> auto& { return p.motion.max_length; }, {0, 1e6, true})},
+      {"depth-kind", "WORD", motion, advanced, "What the numbers of the depth channel mean.",
+       word(
+           [](auto& p) -> auto& { return p.motion.depth_kind; }, kDepthKinds)},
+
+      {"alpha", "WEIGHT", history, basic,
+       "Weight of the present frame, the rest is history. Near 0 history decides: steady, slow to follow changes of "
+       "light. 1 leaves the present as it is.",
+       number([](auto& p) -> auto& { return p.recursive.alpha; }, {0, 1, true})},
+      {"alpha-rule", "WORD", history, advanced, "How the weight of the present goes with the number of frames seen.",
+       word(
+           [](auto& p) -> auto& { return p.recursive.alpha_rule; }, kAlphaRules)},
+      {"history-filter", "WORD", history, advanced, "Filter that reads history between pixels.",
+       word(
+           [](auto& p) -> auto& { return p.recursive.history_filter; }, kHistoryFilters)},
+      {"dering", "WORD", history, expert, "Whether what the Catmull-Rom filters read is held between the four nearest pixels.",
+       word([](auto& p) -> auto& { return p.recursive.dering; }, kSwitches)},
+      {"disocclusion", "WORD", history, advanced, "Where history is dropped because the surface was not seen before.",
+       word(
+           [](auto& p) -> auto& { return p.recursive.disocclusion; }, kDisocclusions)},
+      {"depth-tolerance", "RATIO", history, expert,
+       "Depth difference, relative to the distance, that still is the same surface under --disocclusion depth. 0 asks "
+       "for equal depths, 1 accepts nearly everything.",
+       number([](auto& p) -> auto& { return p.recursive.depth_tolerance; }, {0, 1})},
+      {"sample-filter", "WORD", history, advanced,
+       "Weights each sample by its true position in the pixel; needs the jitter of the frames.",
+       word(
+           [](auto& p) -> auto& { return p.recursive.sample_filter; }, kSampleFilters)},
+
+      {"box", "WORD", rectify, advanced, "The colors that history may have, made from the neighbors of the present.",
+       word(
+           [](auto& p) -> auto& { return p.rectify.box; }, kBoxes)},
+      {"gamma", "SIGMAS", rectify, basic,
+       "Half size of the variance box in standard deviations. Near 0 history is pulled to the mean of the neighbors: "
+       "no ghosts, no steadiness. Large values let history through: steady, but ghosts stay.",
+       number([](auto& p) -> auto& { return p.rectify.gamma; }, {0, 100})},
+      {"window", "PIXELS", rectify, advanced, "Edge of the neighborhood that the box is made from.",
+       word(
+           [](auto& p) -> auto& { return p.rectify.window; }, kWindows)},
+      {"rule", "WORD", rectify, advanced, "How history outside the box is brought onto it.",
+       word(
+           [](auto& p) -> auto& { return p.rectify.rule; }, kBoxRules)},
+      {"anchor", "WORD", rectify, expert, "Where the line of --rule clip leads.",
+       word(
+           [](auto& p) -> auto& { return p.rectify.anchor; }, kBoxAnchors)},
+      {"space", "WORD", rectify, expert, "Color space of the box.",
+       word(
+           [](auto& p) -> auto& { return p.rectify.space; }, kBoxSpaces)},
+  };
+}
+
+}  // namespace varve

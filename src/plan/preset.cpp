@@ -1,0 +1,61 @@
+#include "plan/preset.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "plan/knob.h"
+
+namespace varve {
+namespace {
+
+constexpr Preset kPresets[] = {
+    {"salvi", "Salvi 2016, An Excursion in Temporal Supersampling",
+     "Variance clipping: sharp history along the longest vector, held to the noise of the present.",
+     "dilation=longest alpha=0.1 alpha-rule=mean history-filter=catmull-rom dering=on disocclusion=window sample-filter=none "
+     "box=variance gamma=1 window=3 rule=clip anchor=present space=ycocg"},
+};
+
+}  // namespace
+
+std::span<const Preset> presets() { return kPresets; }
+
+const Preset* find_preset(std::string_view name) {
+  for (const Preset& preset : kPresets)
+    if (preset.name == name) return &preset;
+  return nullptr;
+}
+
+Parameters preset_parameters(const Preset& preset) {
+  Parameters parameters;
+  parameters.preset = preset.name;
+  set_parameters(parameters, preset.values);
+  return parameters;
+}
+
+std::string parameters_text(const Parameters& parameters) {
+  std::string text;
+  for (const Knob& knob : knobs()) {
+    if (!text.empty()) text += ' ';
+    text.append(knob.name).append("=").append(knob.value.show(parameters));
+  }
+  return text;
+}
+
+void set_parameters(Parameters& parameters, std::string_view text) {
+  const std::vector<Knob> table = knobs();
+  while (!text.empty()) {
+    const std::string_view item = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(item.size() + 1, text.size()));
+    if (item.empty()) continue;
+    const std::size_t equals = std::min(item.find('='), item.size());
+    const std::string_view name = item.substr(0, equals), value = item.substr(std::min(equals + 1, item.size()));
+    const auto knob = std::ranges::find(table, name, &Knob::name);
+    if (knob == table.end())
+      throw Failure(ExitCode::usage, "there is no parameter named \"" + std::string(name) + "\"");
+    if (!knob->value.read(parameters, value))
+      throw Failure(ExitCode::usage, "parameter " + std::string(name) + " takes " + knob->value.allowed + ", not \"" +
+                                         std::string(value) + "\"");
+  }
+}
+
+}  // namespace varve
