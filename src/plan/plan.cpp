@@ -126,7 +126,7 @@ class Planner {
   void sample_weights() {
     plan_.use_jitter = parameters_.recursive.sample_filter != SampleFilter::none;
     add("sample weights", plan_.use_jitter,
-        plan_.use_jitter ? "the jitter is known: samples count by their distance from the pixel centre"
+        plan_.use_jitter ? "the jitter is known: samples count by their distance from the pixel center"
         : info_.frames_with_jitter > 0
             ? "the jitter is known, but no sample filter is asked for; --sample-filter NAME turns it on"
             : "the jitter is not known");
