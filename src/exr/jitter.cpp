@@ -78,7 +78,7 @@ struct SidecarReader {
     if (!frame || !sample || !x || !y) refuse("holds something that is not a number");
     if (!within_a_pixel({*x, *y}))
       refuse("the jitter of frame " + std::to_string(*frame) +
-             " is more than one pixel; give sample position minus pixel centre in pixels, y down");
+             " is more than one pixel; give sample position minus pixel center in pixels, y down");
     if (*sample != 0) return;
     if (!source.table.emplace(*frame, Jitter{*x, *y}).second)
       refuse("frame " + std::to_string(*frame) + " is listed twice");

@@ -13,7 +13,8 @@ using Members = std::initializer_list<std::pair<const char*, std::string>>;
 
 std::string object(Members members) {
   std::string text = "{";
-  for (const auto& [name, value] : members) text.append(text.size() > 1 ? "," : "").append(json_quote(name)).append(":").append(value);
+  for (const auto& [name, value] : members)
+    text.append(text.size() > 1 ? "," : "").append(json_quote(name)).append(":").append(value);
   return text + "}";
 }
 

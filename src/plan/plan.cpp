@@ -126,7 +126,7 @@ class Planner {
   void sample_weights() {
     plan_.use_jitter = parameters_.recursive.sample_filter != SampleFilter::none;
     add("sample weights", plan_.use_jitter,
-        plan_.use_jitter ? "the jitter is known: samples count by their distance from the pixel centre"
+        plan_.use_jitter ? "the jitter is known: samples count by their distance from the pixel center"
         : info_.frames_with_jitter > 0
             ? "the jitter is known, but no sample filter is asked for; --sample-filter NAME turns it on"
             : "the jitter is not known");
@@ -146,11 +146,11 @@ class Planner {
     }
     const std::string edge = std::to_string(r.window), size = edge + "x" + edge;
     const std::string space = r.space == BoxSpace::ycocg ? "YCoCg" : "RGB";
+    const std::string gamma = "gamma " + short_number(r.gamma);
     const std::string kind = r.box == Box::minmax     ? "least and greatest"
-                             : r.box == Box::variance ? "mean and " + short_number(r.gamma) + " standard deviations"
-                                                      : "mean and " + short_number(r.gamma) +
-                                                            " standard deviations, cut by least and greatest,";
-    add("neighborhood box", true, kind + " of " + size + " in " + space + " tell what history may say");
+                             : r.box == Box::variance ? "variance, " + gamma
+                                                      : "variance, " + gamma + ", cut by least and greatest";
+    add("neighborhood box", true, "what history may say: " + kind + ", of " + size + " pixels in " + space);
     add("rectify", true,
         std::string(r.rule == BoxRule::clip ? "history is clipped towards the " : "history is clamped, anchor ") +
             (r.anchor == BoxAnchor::present ? "present" : "mean") + ", which removes what is no longer there");

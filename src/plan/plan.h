@@ -25,7 +25,8 @@ struct OutputRequest {
 
 struct Plan {
   std::vector<PlannedPass> passes;
-  std::vector<ChannelRef> channels;   ///< read for every frame (positions in the first frame's files)
+  std::vector<ChannelRef> channels;   ///< with a role, read for every frame (positions in the first frame's files);
+                                      ///< channels that are only passed through are not among them
   bool use_depth = false;             ///< depth is read and used
   bool use_motion = false;
   bool use_jitter = false;
