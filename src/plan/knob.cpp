@@ -100,8 +100,10 @@ std::vector<Knob> knobs() {
       {"history-filter", "WORD", history, advanced, "Filter that reads history between pixels.",
        word(
            [](auto& p) -> auto& { return p.recursive.history_filter; }, kHistoryFilters)},
-      {"dering", "WORD", history, expert, "Whether what the Catmull-Rom filters read is held between the four nearest pixels.",
-       word([](auto& p) -> auto& { return p.recursive.dering; }, kSwitches)},
+      {"dering", "WORD", history, expert,
+       "Whether what the Catmull-Rom filters read is held between the four nearest pixels.",
+       word(
+           [](auto& p) -> auto& { return p.recursive.dering; }, kSwitches)},
       {"disocclusion", "WORD", history, advanced, "Where history is dropped because the surface was not seen before.",
        word(
            [](auto& p) -> auto& { return p.recursive.disocclusion; }, kDisocclusions)},
