@@ -122,7 +122,7 @@ ChannelIndex index_channels(std::span<const FileHeader> files) {
     const FileHeader& file = files[std::size_t(f)];
     for (int p = 0; p < int(file.parts.size()); ++p) {
       const Part& part = file.parts[std::size_t(p)];
-      if (part.storage == Storage::deep_scanline || part.storage == Storage::deep_tiled) continue;
+      if (is_deep(part)) continue;
       const std::vector<std::string> from_part = part_path(file, part);
       for (int c = 0; c < int(part.channels.size()); ++c) {
         const Channel& channel = part.channels[std::size_t(c)];
@@ -187,11 +187,10 @@ std::optional<ChannelRef> mapped_channel(const ChannelIndex& index, const RoleRe
   const std::string what = "--map " + asked->first + "=" + asked->second + ": ";
   if (!found) throw Failure(ExitCode::inconsistent, what + "there is no such channel; varve probe lists the channels");
   const Channel& channel = index.channel(*found);
-  const Storage storage = index.files[std::size_t(found->file)].parts[std::size_t(found->part)].storage;
   if (channel.x_sampling != 1 || channel.y_sampling != 1)
     throw Failure(ExitCode::inconsistent,
                   what + "the channel is subsampled; only channels with every pixel can be used");
-  if (storage == Storage::deep_scanline || storage == Storage::deep_tiled)
+  if (is_deep(index.files[std::size_t(found->file)].parts[std::size_t(found->part)]))
     throw Failure(ExitCode::inconsistent, what + "the channel is in a deep part; flatten it first");
   if (channel.type == PixelType::uint32)
     throw Failure(ExitCode::inconsistent, what + "the channel holds integers, which are never filtered");

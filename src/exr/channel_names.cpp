@@ -80,7 +80,7 @@ std::vector<ColorLayer> color_layers(const ChannelIndex& index) {
   std::vector<std::string> names;
   bool deep = false;
   for (const Part& part : file.parts) {
-    deep = deep || part.storage == Storage::deep_scanline || part.storage == Storage::deep_tiled;
+    deep = deep || is_deep(part);
     for (const Channel& channel : part.channels) names.push_back(channel.name);
   }
   throw Failure(ExitCode::inconsistent,

@@ -5,7 +5,6 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfThreading.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -50,7 +49,7 @@ Imf::Header header_of(const Part& part) {
     header.channels().insert(channel.name, Imf::Channel(library_type(channel.type), channel.x_sampling,
                                                         channel.y_sampling, channel.perceptually_linear));
   const Attribute* level = part.attribute("dwaCompressionLevel");
-  if (level && level->numbers.size() == 1) Imf::addDwaCompressionLevel(header, float(level->numbers[0]));
+  if (level && level->numbers.size() == 1) header.dwaCompressionLevel() = float(level->numbers[0]);
   return header;
 }
 

@@ -55,6 +55,7 @@ struct Pixels {
   int columns = 0, rows = 0, size = 0;  // size: bytes per pixel
   int xs = 1, ys = 1;
   std::string bytes;  // rows without gaps
+  bool operator==(const Pixels&) const = default;
 };
 
 /// Pixels of each channel of one part.

@@ -1,0 +1,143 @@
+#include "plan/cost.h"
+
+#include <algorithm>
+#include <set>
+#include <thread>
+
+#include "diagnose/aov.h"
+
+namespace varve {
+namespace {
+
+constexpr std::size_t kBaseBytes = std::size_t(15) << 20;
+
+/// Nanoseconds per decoded and per encoded byte, one thread.
+struct CodecCost {
+  double decode, encode;
+};
+
+// Measured on 1080p frames (research/io_floor.md, section 1): zip and zips through libdeflate level 4; the others through
+// the OpenEXR C++ API. rle, pxr24 and b44 were not measured: pxr24 is zlib, the others are taken as light work.
+constexpr CodecCost kNone{0.2, 0.9}, kLight{1.5, 3}, kZip{1.9, 9}, kPiz{5, 11}, kZlib{4.5, 18}, kDwa{2.6, 16};
+
+// Nanoseconds per pixel and pass, one thread with AVX2 (io_floor.md, section 3); sanitize, inversion of forward vectors, depth
+// test, sample weights and diagnostics are set by their traffic and not measured yet.
+constexpr double kConvert = 1.5, kSanitize = 1, kMotion = 0.5, kInvert = 12, kDilate = 1.1, kHistory = 4.1, kDepthTest = 1,
+                 kSampleWeights = 2, kBox = 1.5, kBlend = 1.7, kDiagnostic = 0.5;
+
+CodecCost cost_of(Compression compression) {
+  switch (compression) {
+    case Compression::none: return kNone;
+    case Compression::rle: case Compression::b44: case Compression::b44a: return kLight;
+    case Compression::zips: case Compression::zip: return kZip;
+    case Compression::piz: return kPiz;
+    case Compression::pxr24: return kZlib;
+    case Compression::dwaa: case Compression::dwab: return kDwa;
+  }
+  return kZlib;
+}
+
+const Part& part_of(const SequenceInfo& info, ChannelRef ref) {
+  return info.first.files[std::size_t(ref.file)].parts[std::size_t(ref.part)];
+}
+
+std::size_t bytes_of(const Part& part, const Channel& channel) {
+  return part.data_window.pixels() / std::size_t(std::max(1, channel.x_sampling)) /
+         std::size_t(std::max(1, channel.y_sampling)) * bytes_per_pixel(channel.type);
+}
+
+std::size_t bytes_of(const Part& part) {
+  std::size_t bytes = 0;
+  for (const Channel& channel : part.channels) bytes += bytes_of(part, channel);
+  return bytes;
+}
+
+std::size_t pixels_of(const SequenceInfo& info, const Subject& subject) {
+  for (const std::optional<ChannelRef>& channel : subject.color)
+    if (channel) return part_of(info, *channel).data_window.pixels();
+  return 0;
+}
+
+using PartKey = std::pair<int, int>;
+
+// Parts that lose a color and must be written anew; every other part is copied chunk by chunk.
+std::set<PartKey> rewritten_parts(const SequenceInfo& info) {
+  std::set<PartKey> parts;
+  for (const Subject& subject : info.first.subjects)
+    for (const std::optional<ChannelRef>& channel : subject.color)
+      if (channel) parts.insert({channel->file, channel->part});
+  return parts;
+}
+
+std::size_t color_bytes(const SequenceInfo& info) {
+  std::size_t bytes = 0;
+  for (const Subject& subject : info.first.subjects)
+    for (const std::optional<ChannelRef>& channel : subject.color)
+      if (channel) bytes += bytes_of(part_of(info, *channel), part_of(info, *channel).channels[std::size_t(channel->channel)]);
+  return bytes;
+}
+
+std::size_t diagnostic_bytes_per_pixel(const OutputRequest& output) {
+  std::size_t bytes = 0;
+  for (const Aov& aov : diagnostic_aovs()) {
+    const bool asked = std::any_of(output.aovs.begin(), output.aovs.end(),
+                                   [&](const std::string& name) { return name == aov.name || name == "all"; });
+    if (asked) bytes += std::max<std::size_t>(1, aov.components.size()) * bytes_per_pixel(aov.type);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Parameters& parameters,
+                           const OutputRequest& output) {
+  std::size_t raw = color_bytes(info);  // of the output
+  std::set<PartKey> whole;
+  if (output.keep_channels) whole = rewritten_parts(info);
+  for (const auto& [file, part] : whole) raw += bytes_of(part_of(info, {file, part, 0}));
+  for (const ChannelRef ref : plan.channels)
+    if (!whole.contains({ref.file, ref.part})) raw += bytes_of(part_of(info, ref), part_of(info, ref).channels[std::size_t(ref.channel)]);
+  const bool depth_test = plan.use_depth && parameters.recursive.disocclusion == Disocclusion::depth;
+  std::size_t histories = 0, at_work = 0;
+  for (const Subject& subject : info.first.subjects) {
+    const std::size_t pixels = pixels_of(info, subject);
+    histories += pixels * (2 * (16 + 8) + (depth_test ? 4 : 0));  // color, count and weight; depth of the last frame
+    at_work = std::max(at_work, pixels * (16 + (plan.use_motion ? 8 : 0) + (plan.use_depth ? 4 : 0) +
+                                          diagnostic_bytes_per_pixel(output)));
+  }
+  return kBaseBytes + raw + histories + at_work;
+}
+
+double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parameters& parameters,
+                        const OutputRequest& output, int threads) {
+  double nanoseconds = 0;
+  std::set<PartKey> read;
+  for (const ChannelRef ref : plan.channels) read.insert({ref.file, ref.part});
+  for (const auto& [file, index] : read) {  // compressed chunks hold all channels: a part is decoded whole or not at all
+    const Part& part = part_of(info, {file, index, 0});
+    nanoseconds += double(bytes_of(part)) * cost_of(part.compression).decode;
+  }
+  const std::size_t diagnostic_bytes = diagnostic_bytes_per_pixel(output);
+  if (output.keep_channels) {
+    for (const auto& [file, index] : rewritten_parts(info)) {
+      const Part& part = part_of(info, {file, index, 0});
+      nanoseconds += double(bytes_of(part)) * cost_of(is_lossy(part.compression) ? Compression::zip : part.compression).encode;
+    }
+  } else {
+    nanoseconds += double(color_bytes(info)) * kZip.encode;
+  }
+  const RecursiveParameters& recursive = parameters.recursive;
+  double per_pixel = kConvert + kSanitize + kBlend + kHistory + double(diagnostic_bytes) * (kDiagnostic + kZip.encode);
+  if (plan.use_motion && parameters.motion.dilation != Dilation::none) per_pixel += kDilate;
+  if (recursive.disocclusion == Disocclusion::depth) per_pixel += kDepthTest;
+  if (recursive.sample_filter != SampleFilter::none) per_pixel += kSampleWeights;
+  if (parameters.rectify.box != Box::none) per_pixel += kBox * std::max(1, parameters.rectify.window) / 3;
+  for (const Subject& subject : info.first.subjects) {
+    const double motion = !plan.use_motion ? 0 : subject.backward ? kMotion : subject.forward ? kMotion + kInvert : 0;
+    nanoseconds += double(pixels_of(info, subject)) * (per_pixel + motion);
+  }
+  const unsigned processors = std::max(1u, std::thread::hardware_concurrency());
+  return nanoseconds * 1e-9 / double(threads > 0 ? unsigned(threads) : processors);
+}
+
+}  // namespace varve
