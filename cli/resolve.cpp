@@ -1,5 +1,6 @@
 // varve resolve.
 #include <cstdio>
+#include <filesystem>
 #include <vector>
 
 #include "base/error.h"
@@ -24,6 +25,14 @@ int describe(const Settings& settings) {
   return int(ExitCode::done);
 }
 
+std::vector<std::string> output_folders(const ResolveJob& job) {
+  const auto folder_of = [](const std::string& path) { return std::filesystem::path(path).parent_path().string(); };
+  std::vector<std::string> folders = {folder_of(job.output.text())};
+  if (job.diagnostics) folders.push_back(folder_of(job.diagnostics->text()));
+  if (!job.preview_folder.empty()) folders.push_back(job.preview_folder);
+  return folders;
+}
+
 }  // namespace
 
 int run_resolve(Settings& settings) {
@@ -45,7 +54,7 @@ int run_resolve(Settings& settings) {
   events.warning = [&](const std::string& sentence) { progress.warning(sentence); };
   events.should_stop = [] { return stop_signal() != 0; };
 
-  watch_signals();
+  watch_signals(output_folders(settings.job));
   ResolveSummary summary;
   try {
     summary = resolve_sequence(settings.job, events);

@@ -291,10 +291,7 @@ TEST_F(Signals, TheSecondOneEndsAtOnce) {
   running.send(SIGINT);
   running.send(SIGINT);
   EXPECT_EQ(running.wait().code, 130);
-  for (const std::string& name : files_below(folder / "out"))
-    if (name.ends_with(".exr")) {
-      EXPECT_TRUE(is_complete(folder / ("out/" + name))) << name;
-    }
+  expect_only_whole_files();
 }
 
 }  // namespace
