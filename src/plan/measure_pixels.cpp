@@ -66,8 +66,9 @@ std::vector<int> spread(const std::vector<int>& frames, int count) {
 
 }  // namespace
 
-std::vector<ChannelStatistics> measure_pixels(const SequenceInfo& info, const InputSequence& input, const RoleRequest& roles,
-                                              const JitterSource& jitter, int frames, Workers& workers) {
+std::vector<ChannelStatistics> measure_pixels(const SequenceInfo& info, const InputSequence& input,
+                                              const RoleRequest& roles, const JitterSource& jitter, int frames,
+                                              Workers& workers) {
   std::vector<ChannelStatistics> all;
   for (const int frame : spread(info.frames, frames)) {
     const FrameHeaders headers = read_frame_headers(input, frame, roles, jitter);

@@ -12,23 +12,24 @@
 namespace varve {
 namespace {
 
-constexpr std::size_t kMaxGaps = 100'000;    // listed; two frames may lie two thousand million apart
-constexpr std::size_t kMaxDifferences = 3;   // frames whose channels differ, described one by one
+constexpr std::size_t kMaxGaps = 100'000;   // listed; two frames may lie two thousand million apart
+constexpr std::size_t kMaxDifferences = 3;  // frames whose channels differ, described one by one
 
 std::string at_frame(int frame) { return "frame " + std::to_string(frame) + ": "; }
 
 std::vector<int> frames_to_probe(const InputSequence& input, const std::vector<int>& asked) {
   if (!asked.empty()) {
     if (!input.color.has_frame() && asked.size() > 1)
-      throw Failure(ExitCode::usage, input.color.text() + ": the name has no place for a frame number, so it is one file; "
-                                                          "write it as shot.####.exr to give several frames");
+      throw Failure(ExitCode::usage, input.color.text() +
+                                         ": the name has no place for a frame number, so it is one file; "
+                                         "write it as shot.####.exr to give several frames");
     return asked;
   }
   std::vector<int> frames = input.color.frames_on_disk();
   if (frames.empty())
-    throw Failure(ExitCode::input, input.color.text() + (input.color.has_frame()
-                                                             ? ": no file of that name with a frame number is there"
-                                                             : ": there is no such file"));
+    throw Failure(ExitCode::input,
+                  input.color.text() + (input.color.has_frame() ? ": no file of that name with a frame number is there"
+                                                                : ": there is no such file"));
   return frames;
 }
 
@@ -127,17 +128,22 @@ struct Survey {
   void finish(const JitterSource& jitter) {
     const std::string of = " of " + std::to_string(info.frames.size()) + " frames";
     if (differing > kMaxDifferences)
-      info.notes.push_back("the channels of " + std::to_string(differing - kMaxDifferences) + " more frames differ as well");
+      info.notes.push_back("the channels of " + std::to_string(differing - kMaxDifferences) +
+                           " more frames differ as well");
     info.camera = "none found";
     if (matrices > 0) info.camera = "worldToCamera or worldToNDC in " + std::to_string(matrices) + of;
-    if (matrices == 0 && notes > 0) info.camera = "view and proj in the attribute Note in " + std::to_string(notes) + of;
+    if (matrices == 0 && notes > 0)
+      info.camera = "view and proj in the attribute Note in " + std::to_string(notes) + of;
     const std::string in = " in " + std::to_string(info.frames_with_jitter) + of;
     switch (jitter.kind) {
-      case JitterSource::Kind::none: info.jitter_source = "none, as asked"; break;
+      case JitterSource::Kind::none:
+        info.jitter_source = "none, as asked";
+        break;
       case JitterSource::Kind::automatic:
         info.jitter_source = info.frames_with_jitter == 0 ? "none found" : "from the headers" + in;
         break;
-      default: info.jitter_source = jitter.description + in;
+      default:
+        info.jitter_source = jitter.description + in;
     }
   }
 };
@@ -151,7 +157,8 @@ void note_jitter(const InputSequence& input, const JitterSource& jitter, Sequenc
       std::filesystem::path(input.color.path(info.frames.front())).parent_path() / "jitter.csv";
   std::error_code ignored;
   if (std::filesystem::is_regular_file(beside, ignored))
-    info.notes.push_back(beside.string() + " lies beside the frames and is not used; if it belongs to them, give --jitter " +
+    info.notes.push_back(beside.string() +
+                         " lies beside the frames and is not used; if it belongs to them, give --jitter " +
                          beside.string());
 }
 
@@ -163,8 +170,9 @@ void note_vectors(const SequenceInfo& info, std::vector<std::string>& notes) {
       const Channel& channel =
           info.first.files[std::size_t(x.file)].parts[std::size_t(x.part)].channels[std::size_t(x.channel)];
       if (channel.type != PixelType::float16) continue;
-      notes.push_back("vectors such as " + channel.name +
-                      " are stored as half: between 32 and 64 px their step is 1/32 px, and it doubles with every octave");
+      notes.push_back(
+          "vectors such as " + channel.name +
+          " are stored as half: between 32 and 64 px their step is 1/32 px, and it doubles with every octave");
       return;
     }
 }
@@ -182,15 +190,16 @@ void note_parts(const SequenceInfo& info, std::vector<std::string>& notes) {
       }
       if (data.empty()) continue;
       const bool dwa = part.compression == Compression::dwaa || part.compression == Compression::dwab;
-      notes.push_back(where + ": " + name_of(part.compression) + " compression is lossy and the part holds data (" + data.front() +
-                      (data.size() > 1 ? ", ..." : "") + ")" +
+      notes.push_back(where + ": " + name_of(part.compression) + " compression is lossy and the part holds data (" +
+                      data.front() + (data.size() > 1 ? ", ..." : "") + ")" +
                       (dwa ? "; it changes data channels whose name ends in Y, vectors by a tenth of a pixel" : ""));
     }
 }
 
 }  // namespace
 
-FrameHeaders read_frame_headers(const InputSequence& input, int frame, const RoleRequest& roles, const JitterSource& jitter) {
+FrameHeaders read_frame_headers(const InputSequence& input, int frame, const RoleRequest& roles,
+                                const JitterSource& jitter) {
   FrameHeaders headers;
   headers.frame = frame;
   try {
@@ -219,7 +228,8 @@ SequenceInfo probe_sequence(const InputSequence& input, const std::vector<int>& 
   info.first = read_frame_headers(input, info.frames.front(), roles, jitter);
   Survey survey{info, channel_names(info.first)};
   survey.add(info.first);
-  for (std::size_t i = 1; i < info.frames.size(); ++i) survey.add(read_frame_headers(input, info.frames[i], roles, jitter));
+  for (std::size_t i = 1; i < info.frames.size(); ++i)
+    survey.add(read_frame_headers(input, info.frames[i], roles, jitter));
   survey.finish(jitter);
   if (info.windows_move) info.notes.push_back("the data window moves between frames; outside it there is no data");
   if (info.windows_differ)
