@@ -64,7 +64,7 @@ bool any_of(std::string_view text, std::initializer_list<std::string_view> names
 }
 
 ChannelClass class_of_base(const std::string& base) {
-  if (any_of(base, {"r", "g", "b", "red", "green", "blue", "y", "ry", "by"})) return ChannelClass::color;
+  if (any_of(base, {"r", "g", "b", "red", "green", "blue", "ry", "by"})) return ChannelClass::color;
   if (any_of(base, {"a", "alpha", "ar", "ag", "ab", "ra", "ga", "ba"})) return ChannelClass::alpha;
   if (any_of(base, {"z", "zback", "depth", "zdepth"})) return ChannelClass::depth;
   if (any_of(base, {"velx", "vely"})) return ChannelClass::motion;
@@ -91,7 +91,8 @@ ChannelClass classify(const Channel& channel) {
   for (auto element = elements.rbegin() + 1; element != elements.rend(); ++element)
     if (const std::optional<ChannelClass> holds = class_of_layer(*element))
       return *holds == ChannelClass::color ? base : *holds;
-  return base;
+  // A plain Y is a luminance; below a layer that says nothing it is the second of some vector.
+  return elements.size() == 1 && elements[0] == "Y" ? ChannelClass::color : base;
 }
 
 const char* name_of(ChannelClass channel_class) {

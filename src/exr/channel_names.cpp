@@ -68,7 +68,8 @@ std::vector<ColorLayer> color_layers(const ChannelIndex& index) {
     for (const ChannelGroup& group : index.groups) {
       const bool r = color_channel(group, 0).has_value(), g = color_channel(group, 1).has_value(),
                  b = color_channel(group, 2).has_value();
-      if (may_be_color(group) && (whole ? r && g && b : r || g || b)) found.push_back(color_layer(group));
+      if (may_be_color(group) && (whole ? r && g && b : (r || g || b) && !group.find("x")))
+        found.push_back(color_layer(group));
     }
     if (!found.empty()) break;
   }

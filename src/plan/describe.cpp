@@ -70,6 +70,13 @@ std::string memory_text(std::size_t bytes) { return std::to_string((bytes + (std
 
 std::string time_text(double seconds) { return seconds < 1 ? number(seconds * 1000) + " ms" : number(seconds) + " s"; }
 
+// As everywhere: the part is named where a file has several.
+std::string shown_name(const SequenceInfo& info, const ChannelStatistics& s) {
+  const bool several = std::any_of(info.first.files.begin(), info.first.files.end(),
+                                   [](const FileHeader& file) { return file.parts.size() > 1; });
+  return (several && !s.part.empty() ? s.part + ":" : "") + s.channel;
+}
+
 std::string sequence_text(const SequenceInfo& info) {
   Table table(2);
   table.add({"frames", format_frame_list(info.frames) + " (" + std::to_string(info.frames.size()) + ")"});
@@ -130,13 +137,13 @@ std::string plan_text(const Plan& plan) {
   return text;
 }
 
-std::string statistics_text(const std::vector<ChannelStatistics>& statistics) {
+std::string statistics_text(const SequenceInfo& info, const std::vector<ChannelStatistics>& statistics) {
   if (statistics.empty()) return "";
   Table table(2);
   table.add({"frame", "channel", "role", "least", "greatest", "mean", "not finite", "zero"});
   for (const ChannelStatistics& s : statistics)
-    table.add({std::to_string(s.frame), (s.part.empty() ? "" : s.part + ":") + s.channel, s.role, number(s.least),
-               number(s.greatest), number(s.mean), std::to_string(s.not_finite),
+    table.add({std::to_string(s.frame), shown_name(info, s), s.role, number(s.least), number(s.greatest),
+               number(s.mean), std::to_string(s.not_finite),
                s.pixels == 0 ? "-" : number(100.0 * double(s.zero) / double(s.pixels)) + " %"});
   return "\nPixels\n" + table.text();
 }
@@ -150,20 +157,30 @@ std::string list_text(const std::string& title, const std::vector<std::string>& 
 
 bool is_vector(const ChannelStatistics& s) { return s.role.starts_with("motion.") || s.role.starts_with("forward."); }
 
+PixelType type_of(const SequenceInfo& info, const ChannelStatistics& s) {
+  for (const FileHeader& file : info.first.files)
+    for (const Part& part : file.parts)
+      for (const Channel& channel : part.channels)
+        if (part.name == s.part && channel.name == s.channel) return channel.type;
+  return PixelType::float32;
+}
+
 /// All frames of one vector channel together.
 struct VectorSummary {
   std::string name;
+  PixelType type = PixelType::float32;
   double least = 0, greatest = 0;
   std::size_t pixels = 0, finite = 0, zero = 0;
 };
 
-std::vector<VectorSummary> summarize_vectors(const std::vector<ChannelStatistics>& statistics) {
+std::vector<VectorSummary> summarize_vectors(const SequenceInfo& info,
+                                             const std::vector<ChannelStatistics>& statistics) {
   std::vector<VectorSummary> all;
   for (const ChannelStatistics& s : statistics) {
     if (!is_vector(s)) continue;
-    const std::string name = (s.part.empty() ? "" : s.part + ":") + s.channel;
+    const std::string name = shown_name(info, s);
     auto found = std::find_if(all.begin(), all.end(), [&](const VectorSummary& v) { return v.name == name; });
-    if (found == all.end()) found = all.insert(all.end(), {name, s.least, s.greatest, 0, 0, 0});
+    if (found == all.end()) found = all.insert(all.end(), {name, type_of(info, s), s.least, s.greatest, 0, 0, 0});
     found->least = std::min(found->least, s.least);
     found->greatest = std::max(found->greatest, s.greatest);
     found->pixels += s.pixels;
@@ -171,14 +188,6 @@ std::vector<VectorSummary> summarize_vectors(const std::vector<ChannelStatistics
     found->zero += s.zero;
   }
   return all;
-}
-
-PixelType type_of(const SequenceInfo& info, const std::string& name) {
-  for (const FileHeader& file : info.first.files)
-    for (const Part& part : file.parts)
-      for (const Channel& channel : part.channels)
-        if ((part.name.empty() ? "" : part.name + ":") + channel.name == name) return channel.type;
-  return PixelType::float32;
 }
 
 }  // namespace
@@ -207,7 +216,7 @@ std::string roles_of(const SequenceInfo& info, ChannelRef ref) {
 
 std::vector<std::string> findings(const SequenceInfo& info, const std::vector<ChannelStatistics>& statistics) {
   std::vector<std::string> found;
-  const std::vector<VectorSummary> vectors = summarize_vectors(statistics);
+  const std::vector<VectorSummary> vectors = summarize_vectors(info, statistics);
   const auto still = [](const VectorSummary& v) { return v.pixels > 0 && v.zero == v.pixels; };
   if (!vectors.empty() && std::all_of(vectors.begin(), vectors.end(), still))
     found.push_back(
@@ -222,14 +231,14 @@ std::vector<std::string> findings(const SequenceInfo& info, const std::vector<Ch
     if (longest > 16384)
       found.push_back(v.name + " reaches " + number(longest) +
                       ": too long for pixels; the convention or the unit is wrong, or background is marked so");
-    if (type_of(info, v.name) == PixelType::float16 && longest >= 32 && longest <= 16384)
+    if (v.type == PixelType::float16 && longest >= 32 && longest <= 16384)
       found.push_back(v.name + " is stored as half and reaches " + number(longest) + ", where its step is " +
                       number(std::exp2(std::floor(std::log2(longest)) - 10)));
   }
   for (const ChannelStatistics& s : statistics)
     if (s.not_finite > 0)
-      found.push_back("frame " + std::to_string(s.frame) + ": " + (s.part.empty() ? "" : s.part + ":") + s.channel +
-                      " has " + std::to_string(s.not_finite) + " pixels that are not finite");
+      found.push_back("frame " + std::to_string(s.frame) + ": " + shown_name(info, s) + " has " +
+                      std::to_string(s.not_finite) + " pixels that are not finite");
   return found;
 }
 
@@ -238,7 +247,8 @@ std::string describe_text(const SequenceInfo& info, const Plan& plan,
   std::vector<std::string> notes = plan.notes;
   notes.insert(notes.end(), info.notes.begin(), info.notes.end());
   return sequence_text(info) + files_text(info, plan) + layers_text(info) + plan_text(plan) +
-         statistics_text(statistics) + list_text("Findings", findings(info, statistics)) + list_text("Notes", notes);
+         statistics_text(info, statistics) + list_text("Findings", findings(info, statistics)) +
+         list_text("Notes", notes);
 }
 
 }  // namespace varve

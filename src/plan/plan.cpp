@@ -146,11 +146,11 @@ class Planner {
     }
     const std::string edge = std::to_string(r.window), size = edge + "x" + edge;
     const std::string space = r.space == BoxSpace::ycocg ? "YCoCg" : "RGB";
+    const std::string gamma = "gamma " + short_number(r.gamma);
     const std::string kind = r.box == Box::minmax     ? "least and greatest"
-                             : r.box == Box::variance ? "mean and " + short_number(r.gamma) + " standard deviations"
-                                                      : "mean and " + short_number(r.gamma) +
-                                                            " standard deviations, cut by least and greatest,";
-    add("neighborhood box", true, kind + " of " + size + " in " + space + " tell what history may say");
+                             : r.box == Box::variance ? "variance, " + gamma
+                                                      : "variance, " + gamma + ", cut by least and greatest";
+    add("neighborhood box", true, "what history may say: " + kind + ", of " + size + " pixels in " + space);
     add("rectify", true,
         std::string(r.rule == BoxRule::clip ? "history is clipped towards the " : "history is clamped, anchor ") +
             (r.anchor == BoxAnchor::present ? "present" : "mean") + ", which removes what is no longer there");
