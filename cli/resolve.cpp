@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "commands.h"
+#include "exr/write_frame.h"
 #include "plan/describe.h"
 #include "progress.h"
 #include "report.h"
@@ -53,6 +54,9 @@ int run_resolve(Settings& settings) {
   };
   events.warning = [&](const std::string& sentence) { progress.warning(sentence); };
   events.should_stop = [] { return stop_signal() != 0; };
+
+  // A report that cannot be written is told now, not after hours of work.
+  if (!settings.report.empty()) check_writable(settings.report);
 
   watch_signals(output_folders(settings.job));
   ResolveSummary summary;

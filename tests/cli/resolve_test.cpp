@@ -192,9 +192,10 @@ const std::vector<Damage>& damages() {
       {"no vectors", [](const Folder& f) { write_small_sequence(f.path(), {.with_vectors = false}); }, {}, 4, "vector"},
       {"no depth where it is needed",
        [](const Folder& f) { write_small_sequence(f.path(), {.with_depth = false}); },
-       {"--dilation", "nearest"},
+       {"--disocclusion", "depth"},
        4,
        "depth"},
+      {"no jitter where it is needed", nothing, {"--sample-filter", "tent", "--jitter", "none"}, 4, "jitter"},
       {"channels differ",
        [](const Folder& f) { write_small_frame(f / "in.0006.exr", 6, {.with_vectors = false}); },
        {},
@@ -216,7 +217,7 @@ const std::vector<Damage>& damages() {
        {"--ocio", "missing.ocio", "--from-space", "a", "--to-space", "b"},
        2,
        "missing.ocio"},
-      {"report in a folder that is not there", nothing, {"--report", "nowhere/report.json"}, 5, "nowhere/report.json"},
+      {"report in a folder that is not there", nothing, {"--report", "nowhere/report.json"}, 5, "nowhere"},
   };
   return all;
 }

@@ -112,6 +112,27 @@ TEST(Usage, EachOptionWithoutItsValue) {
   }
 }
 
+/// What bash would offer for the last of these words.
+std::string completed(const std::string& words) {
+  Folder folder;
+  std::ofstream(folder / "script") << "source <(" << VARVE_PROGRAM << " help --completion bash)\n"
+                                   << "COMP_WORDS=(" << words << ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_varve\n"
+                                   << "echo ${COMPREPLY[@]} > " << (folder / "out").string() << "\n";
+  EXPECT_EQ(std::system(("bash -u " + (folder / "script").string()).c_str()), 0);
+  return bytes_of(folder / "out");
+}
+
+TEST(Usage, BashCompletes) {
+  EXPECT_EQ(completed("varve res"), "resolve\n");
+  EXPECT_EQ(completed("varve resolve in.exr --dil"), "--dilation\n");
+  EXPECT_EQ(completed("varve resolve in.exr --dilation n"), "none nearest\n");
+  EXPECT_EQ(completed("varve resolve in.exr --dilation = n"), "none nearest\n");
+  EXPECT_EQ(completed("varve resolve in.exr --dilation ="), "none nearest longest\n");
+  EXPECT_EQ(completed("varve probe --js"), "--json\n");
+  EXPECT_EQ(completed("varve help exit"), "exit-codes\n");
+  EXPECT_EQ(completed("varve resolve --alpha 0"), "\n");
+}
+
 TEST(Usage, AFullDiskIsNoticed) {
   Folder folder;
   const std::string line = std::string(VARVE_PROGRAM) + " help resolve > /dev/full 2> " + (folder / "err").string();

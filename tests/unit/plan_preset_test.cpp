@@ -94,11 +94,11 @@ TEST(ParametersText, ReadsBackToTheSameBits) {
 }
 
 TEST(ParametersText, ShowsEveryKnobOnceAndShort) {
-  const std::string text = " " + parameters_text(Parameters{}) + " ";
+  const std::string text = std::string(" ").append(parameters_text(Parameters{})).append(" ");
   EXPECT_NE(text.find(" alpha=0.1 "), std::string::npos) << text;
   EXPECT_NE(text.find(" gamma=1 "), std::string::npos) << text;
   for (const Knob& knob : knobs()) {
-    const std::string key = " " + std::string(knob.name) + "=";
+    const std::string key = std::string(" ").append(knob.name).append("=");
     EXPECT_NE(text.find(key), std::string::npos) << key;
     EXPECT_EQ(text.find(key), text.rfind(key)) << key;
   }
