@@ -41,7 +41,8 @@ std::string bash_completion() {
     for (const Option& option : options) values += value_arm(option);
     arms += "    " + std::string(command.name) + ")\n";
     if (!values.empty()) arms += "      case \"$prev\" in\n" + values + "      esac\n";
-    arms += "      if [[ \"$cur\" == -* ]]; then mapfile -t COMPREPLY < <(compgen -W \"" + words_of(options) + "\" -- \"$cur\")\n";
+    arms += "      if [[ \"$cur\" == -* ]]; then mapfile -t COMPREPLY < <(compgen -W \"" + words_of(options) +
+            "\" -- \"$cur\")\n";
     if (command.bit == kHelp)
       arms += "      else mapfile -t COMPREPLY < <(compgen -W \"" + help_words + "\" -- \"$cur\")\n";
     else if (!command.positional.empty())
@@ -57,7 +58,7 @@ std::string bash_completion() {
          "  COMPREPLY=()\n"
          "  if ((COMP_CWORD == 1)); then mapfile -t COMPREPLY < <(compgen -W \"" +
          names +
-         " --help --version\" -- \"$cur\")); return; fi\n"
+         " --help --version\" -- \"$cur\"); return; fi\n"
          "  case \"${COMP_WORDS[1]}\" in\n" +
          arms +
          "  esac\n"

@@ -69,10 +69,13 @@ std::string usage_text() {
 
 std::string overview_text() {
   return "varve " + std::string(version()) + ", an offline temporal resolve of rendered OpenEXR sequences\n\n" +
-         "Usage: varve COMMAND [ARGUMENT]...\n\nCommands:\n" + commands_list() +
-         "\n`varve help COMMAND` explains a command, `varve help COMMAND --all` with its rare\n"
-         "options too. Further topics for `varve help`:\n" +
-         wrap(topic_names() + ".", 2);
+         "Usage: varve COMMAND [ARGUMENT]...\n\nCommands:\n" + commands_list() + "\n" +
+         wrap(
+             "`varve help COMMAND` explains a command, `varve help COMMAND --all` with its rare options too. Further "
+             "topics of "
+             "`varve help`: " +
+                 topic_names() + ".",
+             0);
 }
 
 std::vector<std::pair<std::string, std::vector<const Option*>>> grouped(std::span<const Option> options) {

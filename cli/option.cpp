@@ -45,7 +45,7 @@ class Reader {
   void read_long(const std::string& argument);
   void read_short(const std::string& argument);
   void take(const Option& option);
-  void apply(const Given& given);
+  void set(const Value<Settings>& value, const std::string& name, const std::string& text);
   void apply_positionals();
   const Option* find(std::string_view typed) const;
 
@@ -87,7 +87,7 @@ Parsed Reader::read() {
   if (parsed_.help) return parsed_;
   // A preset lies under the options that were given by name, whatever the order on the line.
   std::ranges::stable_partition(given_, [](const Given& given) { return given.option->first; });
-  for (const Given& given : given_) apply(given);
+  for (const Given& given : given_) set(given.option->value, dashed(*given.option), given.value);
   apply_positionals();
   return parsed_;
 }
@@ -131,16 +131,15 @@ void Reader::take(const Option& option) {
   given_.push_back({&option, arguments_[next_++]});
 }
 
-void Reader::apply(const Given& given) {
+void Reader::set(const Value<Settings>& value, const std::string& name, const std::string& text) {
   bool accepted = false;
   try {
-    accepted = given.option->value.read(parsed_.settings, given.value);
+    accepted = value.read(parsed_.settings, text);
   } catch (const Failure& failure) {
     // Sentences of the library do not know which option brought the text.
-    throw Failure(failure.code(), dashed(*given.option) + ": " + failure.what());
+    throw Failure(failure.code(), name + ": " + failure.what());
   }
-  if (!accepted)
-    refuse(dashed(*given.option) + " takes " + given.option->value.allowed + ", not " + quoted(given.value));
+  if (!accepted) refuse(name + " takes " + value.allowed + ", not " + quoted(text));
 }
 
 void Reader::apply_positionals() {
@@ -152,8 +151,7 @@ void Reader::apply_positionals() {
     refuse(std::string(command_.name) + " takes " + (name.empty() ? "no argument" : "one " + name) + ", and " +
            quoted(positionals_[name.empty() ? 0 : 1]) + " is one too many" +
            (optional || name.empty() ? "" : "; a sequence is written as one pattern, such as shot.####.exr"));
-  if (!positionals_.empty() && !command_.read_positional.read(parsed_.settings, positionals_[0]))
-    refuse(name + " is " + command_.read_positional.allowed + ", not " + quoted(positionals_[0]));
+  if (!positionals_.empty()) set(command_.read_positional, name, positionals_[0]);
 }
 
 }  // namespace

@@ -70,7 +70,8 @@ Value<Settings> convention_value() {
 }
 
 Value<Settings> knob_value(const Knob& knob) {
-  return inside<Settings>(knob.value, [](auto& s) -> auto& { return s.job.parameters; });
+  return inside<Settings>(
+      knob.value, [](auto& s) -> auto& { return s.job.parameters; });
 }
 
 }  // namespace varve::cli

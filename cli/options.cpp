@@ -112,7 +112,8 @@ void add_motion_options(std::vector<Option>& rows) {
   const auto add = [&rows, group](const char* name, const char* metavar, const char* help, Value<Settings> value) {
     rows.push_back({name, 0, metavar, kBoth, kExpert, group, help, std::move(value)});
   };
-  add("convention", "NAME", "How the renderer wrote its motion vectors; see `varve help conventions`.", convention_value());
+  add("convention", "NAME", "How the renderer wrote its motion vectors; see `varve help conventions`.",
+      convention_value());
   rows.back().tier = kBasic;
   rows.back().topic = "conventions";
   add("motion-bias", "VALUE",

@@ -1,9 +1,11 @@
 // varve resolve.
 #include <cstdio>
+#include <filesystem>
 #include <vector>
 
 #include "base/error.h"
 #include "commands.h"
+#include "exr/write_frame.h"
 #include "plan/describe.h"
 #include "progress.h"
 #include "report.h"
@@ -22,6 +24,14 @@ int describe(const Settings& settings) {
   const Plan plan = plan_sequence(settings.job, info);
   std::fputs(describe_text(info, plan, {}).c_str(), stdout);
   return int(ExitCode::done);
+}
+
+std::vector<std::string> output_folders(const ResolveJob& job) {
+  const auto folder_of = [](const std::string& path) { return std::filesystem::path(path).parent_path().string(); };
+  std::vector<std::string> folders = {folder_of(job.output.text())};
+  if (job.diagnostics) folders.push_back(folder_of(job.diagnostics->text()));
+  if (!job.preview_folder.empty()) folders.push_back(job.preview_folder);
+  return folders;
 }
 
 }  // namespace
@@ -45,7 +55,10 @@ int run_resolve(Settings& settings) {
   events.warning = [&](const std::string& sentence) { progress.warning(sentence); };
   events.should_stop = [] { return stop_signal() != 0; };
 
-  watch_signals();
+  // A report that cannot be written is told now, not after hours of work.
+  if (!settings.report.empty()) check_writable(settings.report);
+
+  watch_signals(output_folders(settings.job));
   ResolveSummary summary;
   try {
     summary = resolve_sequence(settings.job, events);

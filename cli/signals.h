@@ -1,12 +1,16 @@
 // SIGINT and SIGTERM while frames are being written.
 #pragma once
 
+#include <span>
+#include <string>
+
 namespace varve::cli {
 
-/// From here on the first SIGINT or SIGTERM only sets a flag; the second ends the program at once, which leaves no file
-/// under a final name unfinished because files are renamed when they are complete. A reader of the standard streams
-/// that goes away no longer ends the program.
-void watch_signals();
+/// From here on the first SIGINT or SIGTERM only sets a flag; the second ends the program at once. No file under a
+/// final name is then unfinished, because files are renamed when they are complete; the temporary files of this process
+/// in `folders` (at most 8 are watched) are removed. A reader of the standard streams that goes away no longer ends the
+/// program.
+void watch_signals(std::span<const std::string> folders);
 
 /// The signal that asked to stop; 0: none.
 int stop_signal();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "base/parallel.h"
 #include "diagnose/aov.h"
 
 namespace varve {
@@ -16,23 +15,33 @@ struct CodecCost {
   double decode, encode;
 };
 
-// Measured on 1080p frames (research/io_floor.md, section 1): zip and zips through libdeflate level 4; the others through
-// the OpenEXR C++ API. rle, pxr24 and b44 were not measured: pxr24 is zlib, the others are taken as light work.
+// Measured on 1080p frames (research/io_floor.md, section 1): zip and zips through libdeflate level 4; the others
+// through the OpenEXR C++ API. rle, pxr24 and b44 were not measured: pxr24 is zlib, the others are taken as light work.
 constexpr CodecCost kNone{0.2, 0.9}, kLight{1.5, 3}, kZip{1.9, 9}, kPiz{5, 11}, kZlib{4.5, 18}, kDwa{2.6, 16};
 
-// Nanoseconds per pixel and pass, one thread with AVX2 (io_floor.md, section 3); sanitize, inversion of forward vectors, depth
-// test, sample weights and diagnostics are set by their traffic and not measured yet.
-constexpr double kConvert = 1.5, kSanitize = 1, kMotion = 0.5, kInvert = 12, kDilate = 1.1, kHistory = 4.1, kDepthTest = 1,
-                 kSampleWeights = 2, kBox = 1.5, kBlend = 1.7, kDiagnostic = 0.5;
+// Nanoseconds per pixel and pass, one thread with AVX2 (io_floor.md, section 3); sanitize, inversion of forward
+// vectors, depth test, sample weights and diagnostics are set by their traffic and not measured yet.
+constexpr double kConvert = 1.5, kSanitize = 1, kMotion = 0.5, kInvert = 12, kDilate = 1.1, kHistory = 4.1,
+                 kDepthTest = 1, kSampleWeights = 2, kBox = 1.5, kBlend = 1.7, kDiagnostic = 0.5;
 
 CodecCost cost_of(Compression compression) {
   switch (compression) {
-    case Compression::none: return kNone;
-    case Compression::rle: case Compression::b44: case Compression::b44a: return kLight;
-    case Compression::zips: case Compression::zip: return kZip;
-    case Compression::piz: return kPiz;
-    case Compression::pxr24: return kZlib;
-    case Compression::dwaa: case Compression::dwab: return kDwa;
+    case Compression::none:
+      return kNone;
+    case Compression::rle:
+    case Compression::b44:
+    case Compression::b44a:
+      return kLight;
+    case Compression::zips:
+    case Compression::zip:
+      return kZip;
+    case Compression::piz:
+      return kPiz;
+    case Compression::pxr24:
+      return kZlib;
+    case Compression::dwaa:
+    case Compression::dwab:
+      return kDwa;
   }
   return kZlib;
 }
@@ -73,7 +82,8 @@ std::size_t color_bytes(const SequenceInfo& info) {
   std::size_t bytes = 0;
   for (const Subject& subject : info.first.subjects)
     for (const std::optional<ChannelRef>& channel : subject.color)
-      if (channel) bytes += bytes_of(part_of(info, *channel), part_of(info, *channel).channels[std::size_t(channel->channel)]);
+      if (channel)
+        bytes += bytes_of(part_of(info, *channel), part_of(info, *channel).channels[std::size_t(channel->channel)]);
   return bytes;
 }
 
@@ -96,7 +106,8 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
   if (output.keep_channels) whole = rewritten_parts(info);
   for (const auto& [file, part] : whole) raw += bytes_of(part_of(info, {file, part, 0}));
   for (const ChannelRef ref : plan.channels)
-    if (!whole.contains({ref.file, ref.part})) raw += bytes_of(part_of(info, ref), part_of(info, ref).channels[std::size_t(ref.channel)]);
+    if (!whole.contains({ref.file, ref.part}))
+      raw += bytes_of(part_of(info, ref), part_of(info, ref).channels[std::size_t(ref.channel)]);
   const bool depth_test = plan.use_depth && parameters.recursive.disocclusion == Disocclusion::depth;
   std::size_t histories = 0, at_work = 0;
   for (const Subject& subject : info.first.subjects) {
@@ -113,7 +124,8 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
   double nanoseconds = 0;
   std::set<PartKey> read;
   for (const ChannelRef ref : plan.channels) read.insert({ref.file, ref.part});
-  for (const auto& [file, index] : read) {  // compressed chunks hold all channels: a part is decoded whole or not at all
+  for (const auto& [file, index] :
+       read) {  // compressed chunks hold all channels: a part is decoded whole or not at all
     const Part& part = part_of(info, {file, index, 0});
     nanoseconds += double(bytes_of(part)) * cost_of(part.compression).decode;
   }
@@ -121,7 +133,8 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
   if (output.keep_channels) {
     for (const auto& [file, index] : rewritten_parts(info)) {
       const Part& part = part_of(info, {file, index, 0});
-      nanoseconds += double(bytes_of(part)) * cost_of(is_lossy(part.compression) ? Compression::zip : part.compression).encode;
+      nanoseconds +=
+          double(bytes_of(part)) * cost_of(is_lossy(part.compression) ? Compression::zip : part.compression).encode;
     }
   } else {
     nanoseconds += double(color_bytes(info)) * kZip.encode;
@@ -136,7 +149,7 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
     const double motion = !plan.use_motion ? 0 : subject.backward ? kMotion : subject.forward ? kMotion + kInvert : 0;
     nanoseconds += double(pixels_of(info, subject)) * (per_pixel + motion);
   }
-  return nanoseconds * 1e-9 / double(threads > 0 ? threads : available_processors());
+  return nanoseconds * 1e-9 / std::max(1, threads);
 }
 
 }  // namespace varve
