@@ -189,8 +189,6 @@ void write_outputs(const Setup& s, const FrameHeaders& headers, const FileSet& p
 
 }  // namespace
 
-const char* version() { return VARVE_VERSION; }
-
 Plan plan_sequence(const ResolveJob& job, SequenceInfo& info) {
   Setup s = set_up(job);
   check_outputs(job, schedule_frames(job, s.info, s.hash));

@@ -1,37 +1,15 @@
 // The page to read first: probe -> plan -> preflight -> per frame: read, sanitize, motion, accumulate, write, report.
 #pragma once
 
-#include <array>
-#include <cstdint>
+#include <cstddef>
 #include <functional>
-#include <optional>
 #include <string>
-#include <vector>
 
+#include "base/version.h"
 #include "plan/plan.h"
+#include "plan/resolve_job.h"
 
 namespace varve {
-
-/// Everything a resolve needs to know; the command line fills it, a program may.
-struct ResolveJob {
-  InputSequence input;
-  SequencePattern output;
-  std::optional<SequencePattern> diagnostics;  ///< separate diagnostic files
-  std::vector<int> frames;                     ///< frames to write; empty: all on disk
-  int preroll = 0;                             ///< frames read before the first one written, to warm the history up
-  std::vector<int> cuts;                       ///< first frames of new shots
-  RoleRequest roles;
-  std::string jitter = "auto";                 ///< see parse_jitter_source
-  Parameters parameters;
-  OutputRequest request;
-  std::optional<Compression> compression;
-  int zip_level = 4;
-  std::string ocio_config, from_space, to_space;  ///< color conversion around the resolve; empty: none
-  std::string preview_folder;                     ///< PNG of color and diagnostics; empty: none
-  std::string display, view;                      ///< OpenColorIO display and view of the previews; empty: the config's default
-  bool resume = false;
-  int threads = 0;                                ///< 0: every processor
-};
 
 /// One row per frame.
 struct FrameReport {
@@ -61,8 +39,5 @@ Plan plan_sequence(const ResolveJob& job, SequenceInfo& info);
 
 /// Resolves and writes every requested frame. What was written before a Failure stays valid.
 ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& events);
-
-/// Program version, "0.1.0".
-const char* version();
 
 }  // namespace varve

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/version.h"
 #include "exr/write_frame.h"
 #include "plan/preset.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "resolve_sequence.h"
+#include "plan/resolve_job.h"
 
 namespace varve {
 

@@ -1,0 +1,7 @@
+#include "base/version.h"
+
+namespace varve {
+
+const char* version() { return VARVE_VERSION; }
+
+}  // namespace varve

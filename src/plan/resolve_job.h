@@ -1,0 +1,35 @@
+// What a user asks for: inputs, outputs, frames and every choice. Filled by the command line, or by a program.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plan/parameters.h"
+#include "plan/plan.h"
+#include "plan/probe.h"
+
+namespace varve {
+
+/// Everything a resolve needs to know; the command line fills it, a program may.
+struct ResolveJob {
+  InputSequence input;
+  SequencePattern output;
+  std::optional<SequencePattern> diagnostics;  ///< separate diagnostic files
+  std::vector<int> frames;                     ///< frames to write; empty: all on disk
+  int preroll = 0;                             ///< frames read before the first one written, to warm the history up
+  std::vector<int> cuts;                       ///< first frames of new shots
+  RoleRequest roles;
+  std::string jitter = "auto";                 ///< see parse_jitter_source
+  Parameters parameters;
+  OutputRequest request;
+  std::optional<Compression> compression;
+  int zip_level = 4;
+  std::string ocio_config, from_space, to_space;  ///< color conversion around the resolve; empty: none
+  std::string preview_folder;                     ///< PNG of color and diagnostics; empty: none
+  std::string display, view;                      ///< OpenColorIO display and view of the previews; empty: the config's default
+  bool resume = false;
+  int threads = 0;                                ///< 0: every processor
+};
+
+}  // namespace varve
