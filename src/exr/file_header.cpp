@@ -1,5 +1,6 @@
 #include "exr/file_header.h"
 
+#include "base/error.h"
 #include "exr/container.h"
 
 namespace varve {
@@ -18,6 +19,16 @@ std::optional<int> Part::channel(std::string_view channel_name) const {
 
 FileHeader read_header(const std::string& path, const ReadLimits& limits) {
   return open_container(InputBytes(path), limits).header;
+}
+
+bool has_every_chunk(const std::string& path) {
+  try {
+    const Container container = open_container(InputBytes(path), {});
+    for (std::size_t part = 0; part < container.raw.size(); ++part) read_chunk_table(container, int(part));
+    return true;
+  } catch (const Failure&) {
+    return false;
+  }
 }
 
 const char* name_of(Compression compression) {

@@ -25,7 +25,8 @@ struct Channel {
 struct Attribute {
   std::string name, type;
   std::string text;              ///< the value as text; empty for types that have none
-  std::vector<double> numbers;   ///< int, float, double, v2*, v3*, box2*, m33*, m44*, rational; row major
+  std::vector<double> numbers;   ///< int, float, double, v2*, v3*, box2* (ends inclusive, as stored), m33*, m44*, rational,
+                                 ///< chromaticities, floatvector, keycode, timecode; matrices row major
 };
 
 struct Part {
@@ -66,6 +67,9 @@ struct ReadLimits {
 /// Reads the headers of one file. Throws Failure(input) with the path and the reason: missing, not EXR, truncated
 /// header, or beyond the limits.
 FileHeader read_header(const std::string& path, const ReadLimits& limits = {});
+
+/// True for a readable file whose chunk tables are complete and point into the file: nothing was cut off.
+bool has_every_chunk(const std::string& path);
 
 const char* name_of(Compression compression);
 const char* name_of(Storage storage);

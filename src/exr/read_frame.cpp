@@ -52,9 +52,9 @@ void join_rows(const std::vector<ChunkRow>& rows, std::span<const std::uint8_t> 
   }
 }
 
-void read_plain_scanlines(const Container& container, int part, std::vector<RawPlane>& planes, Workers& workers) {
+void read_plain_scanlines(const Container& container, int part, const std::vector<std::uint64_t>& table,
+                          std::vector<RawPlane>& planes, Workers& workers) {
   const Part& wanted = container.header.parts[std::size_t(part)];
-  const std::vector<std::uint64_t> table = read_chunk_table(container, part);
   std::vector<Scratch> scratch(std::size_t(workers.count()));
   workers.for_each(table.size(), [&](std::size_t i, int worker) {
     Scratch& mine = scratch[std::size_t(worker)];
@@ -111,8 +111,10 @@ FramePixels read_channels(const FileHeader& header, std::span<const ChannelRef> 
   }
   for (std::size_t p = 0; p < header.parts.size(); ++p) {
     if (!touched[p]) continue;
+    // The table comes first on both ways: it tells an incomplete file, which the library would take time to search.
+    const std::vector<std::uint64_t> table = read_chunk_table(container, int(p));
     if (is_plain_scanline(header.parts[p]))
-      read_plain_scanlines(container, int(p), frame.planes[p], workers);
+      read_plain_scanlines(container, int(p), table, frame.planes[p], workers);
     else
       read_part_by_library(header, int(p), frame.planes[p], workers.count());
   }

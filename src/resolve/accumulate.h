@@ -33,7 +33,7 @@ struct RectifyParameters {
   int window = 3;                         ///< edge of the neighborhood: 3, 5 or 7
   BoxRule rule = BoxRule::clip;
   BoxAnchor anchor = BoxAnchor::present;  ///< clip towards the present (held inside the box) or the mean
-  BoxSpace space = BoxSpace::ycocg;
+  BoxSpace space = BoxSpace::rgb;
 };
 
 /// What one frame leaves to the next. Made only by accumulate(); empty before the first frame and after a cut.

@@ -1,0 +1,155 @@
+#include "stages/preflight.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+#include "base/error.h"
+#include "exr/write_frame.h"
+#include "plan/preset.h"
+
+namespace varve {
+namespace {
+
+/// True when a finished file of the same parameters stands under the output's name.
+bool is_complete(const std::string& path, const std::string& hash) {
+  try {
+    const FileHeader header = read_header(path);
+    const Attribute* found = header.parts.front().attribute("varve:hash");
+    return found && found->text == hash && has_every_chunk(path);
+  } catch (const Failure&) {
+    return false;
+  }
+}
+
+/// All frames to look at: those on disk from `preroll` before the first requested to the last requested.
+std::vector<ScheduledFrame> frames_between(const ResolveJob& job, const SequenceInfo& info) {
+  const std::set<int> requested(info.frames.begin(), info.frames.end());
+  std::set<int> all = requested;
+  if (job.input.color.has_frame()) {
+    const long long first = static_cast<long long>(info.frames.front()) - job.preroll;
+    for (const int frame : job.input.color.frames_on_disk())
+      if (frame >= first && frame < info.frames.back()) all.insert(frame);
+  }
+  std::vector<ScheduledFrame> schedule;
+  for (const int frame : all) schedule.push_back({frame, requested.contains(frame), false, false, ""});
+  return schedule;
+}
+
+void mark_restarts(std::vector<ScheduledFrame>& schedule, const std::vector<int>& cuts) {
+  for (std::size_t i = 0; i < schedule.size(); ++i) {
+    ScheduledFrame& s = schedule[i];
+    if (i == 0)
+      s.restart_reason = "first frame";
+    else if (std::find(cuts.begin(), cuts.end(), s.frame) != cuts.end())
+      s.restart_reason = "cut";
+    else if (s.frame != schedule[i - 1].frame + 1)
+      s.restart_reason = "gap after frame " + std::to_string(schedule[i - 1].frame);
+    s.restart = !s.restart_reason.empty();
+  }
+}
+
+/// Keeps what unfinished frames need: each back to its restart.
+void drop_finished(std::vector<ScheduledFrame>& schedule) {
+  std::vector<ScheduledFrame> kept;
+  for (std::size_t begin = 0; begin < schedule.size();) {
+    std::size_t end = begin + 1, last_open = begin;
+    bool open = false;
+    while (end < schedule.size() && !schedule[end].restart) ++end;
+    for (std::size_t i = begin; i < end; ++i)
+      if (schedule[i].write && !schedule[i].complete) open = true, last_open = i;
+    for (std::size_t i = begin; i < end; ++i)
+      if ((open && i <= last_open) || schedule[i].complete) kept.push_back(schedule[i]);
+    begin = end;
+  }
+  schedule = std::move(kept);
+}
+
+std::filesystem::path canonical(const std::string& path) { return std::filesystem::weakly_canonical(path); }
+
+}  // namespace
+
+std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash) {
+  std::vector<ScheduledFrame> schedule = frames_between(job, info);
+  mark_restarts(schedule, job.cuts);
+  if (job.resume) {
+    for (ScheduledFrame& s : schedule)
+      s.complete = s.write && is_complete(job.output.path(s.frame), hash) &&
+                   (!job.diagnostics || is_complete(job.diagnostics->path(s.frame), hash));
+    drop_finished(schedule);
+  }
+  return schedule;
+}
+
+std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info) {
+  std::string text = parameters_text(job.parameters);
+  const int first = info.frames.front();
+  text += " first=" + std::to_string(first) + " preroll=" + std::to_string(job.preroll);
+  std::vector<int> cuts = job.cuts;
+  std::sort(cuts.begin(), cuts.end());
+  if (!cuts.empty()) text += " cuts=" + format_frame_list(cuts);
+  text += " jitter=" + info.jitter_source + " convention=" + job.roles.convention;
+  for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
+  for (const auto& [role, channel] : job.roles.map) text += " map:" + role + "=" + channel;
+  for (const Subject& subject : info.first.subjects) {
+    const MotionEncoding& e = subject.backward ? subject.backward_encoding : subject.forward_encoding;
+    char encoding[160];
+    std::snprintf(encoding, sizeof encoding, " vectors:%s=%s,%.17g,%.17g,%.17g,%g,%g,%d,%d", subject.layer.c_str(),
+                  subject.convention.c_str(), e.bias, e.scale, e.shutter, e.sign_x, e.sign_y, int(e.unit), int(e.direction));
+    text += encoding;
+  }
+  for (const std::string& aov : job.request.aovs) text += " aov=" + aov;
+  if (job.request.diagnostics_apart) text += " diagnostics=apart";
+  if (!job.request.keep_channels) text += " keep=none";
+  if (job.compression) text += std::string(" compression=") + name_of(*job.compression);
+  text += " zip-level=" + std::to_string(job.zip_level);
+  if (!job.from_space.empty()) text += " from-space=" + job.from_space;
+  if (!job.to_space.empty()) text += " to-space=" + job.to_space;
+  return text;
+}
+
+std::string hash_of(const std::string& text) {
+  std::uint64_t h = 14695981039346656037ull;
+  for (const char c : text + " " + version()) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  char hex[17];
+  std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(h));
+  return hex;
+}
+
+void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& schedule) {
+  std::set<std::filesystem::path> inputs;
+  std::size_t writes = 0;
+  for (const ScheduledFrame& s : schedule) {
+    inputs.insert(canonical(job.input.color.path(s.frame)));
+    for (const SequencePattern& role : job.input.roles) inputs.insert(canonical(role.path(s.frame)));
+    writes += s.write;
+  }
+  const auto check = [&](const SequencePattern& pattern, const char* option, std::set<std::filesystem::path>& outputs) {
+    if (writes > 1 && !pattern.has_frame())
+      throw Failure(ExitCode::usage, std::string(option) + " '" + pattern.text() + "' names one file for " +
+                                         std::to_string(writes) + " frames; put the frame number in, as in out.####.exr");
+    for (const ScheduledFrame& s : schedule) {
+      if (!s.write) continue;
+      const std::string path = pattern.path(s.frame);
+      const std::filesystem::path file = canonical(path);
+      if (inputs.contains(file))
+        throw Failure(ExitCode::usage, "output '" + path + "' (frame " + std::to_string(s.frame) +
+                                           ") is one of the inputs; name another file or folder with " + option);
+      if (!outputs.insert(file).second)
+        throw Failure(ExitCode::usage, "output '" + path + "' (frame " + std::to_string(s.frame) +
+                                           ") would be written twice; give " + option + " another name");
+    }
+    for (const ScheduledFrame& s : schedule)
+      if (s.write) {
+        check_writable(pattern.path(s.frame));
+        break;
+      }
+  };
+  std::set<std::filesystem::path> outputs;
+  check(job.output, "--output", outputs);
+  if (job.diagnostics) check(*job.diagnostics, "--diagnostics", outputs);
+}
+
+}  // namespace varve

@@ -1,0 +1,99 @@
+#include "stages/read_present.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "exr/convert.h"
+
+namespace varve {
+namespace {
+
+const RawPlane& pixels_of(const FileSet& files, ChannelRef ref) { return files[std::size_t(ref.file)][ref]; }
+
+/// One channel as float over `window`; where its own window has no data, `outside`.
+Plane<float> read_plane(const RawPlane& raw, const Window& window, float outside, Workers& workers) {
+  Plane<float> plane(window);
+  const Window common = intersect(raw.window, window);
+  workers.for_rows(window.y0, window.y1, [&](int y) {
+    float* row = plane.row(y);
+    if (y < common.y0 || y >= common.y1) {
+      std::fill(row, row + window.width(), outside);
+      return;
+    }
+    std::fill(row, row + (common.x0 - window.x0), outside);
+    const std::byte* from = raw.row(y - raw.window.y0) + std::size_t(common.x0 - raw.window.x0) * bytes_per_pixel(raw.type);
+    to_float(raw.type, from, row + (common.x0 - window.x0), std::size_t(common.width()));
+    std::fill(row + (common.x1 - window.x0), row + window.width(), outside);
+  });
+  return plane;
+}
+
+/// RGBA, interleaved. A missing color channel is 0, a missing alpha 1.
+Plane<glm::vec4> read_color(const Subject& subject, const FileSet& files, const Window& window, Workers& workers) {
+  Plane<glm::vec4> color(window, kPresentBorder);
+  const int width = window.width();
+  workers.for_rows(window.y0, window.y1, [&](int y) {
+    glm::vec4* row = color.row(y);
+    std::vector<float> channel(static_cast<std::size_t>(width));
+    for (int k = 0; k < 4; ++k) {
+      if (const auto& ref = subject.color[std::size_t(k)]) {
+        const RawPlane& raw = pixels_of(files, *ref);
+        to_float(raw.type, raw.row(y - raw.window.y0), channel.data(), std::size_t(width));
+      } else {
+        std::fill(channel.begin(), channel.end(), k == 3 ? 1.0f : 0.0f);
+      }
+      for (int x = 0; x < width; ++x) row[x][k] = channel[std::size_t(x)];
+    }
+  });
+  return color;
+}
+
+Plane<glm::vec2> read_vectors(const VectorChannels& channels, const MotionEncoding& encoding, const FileSet& files,
+                              const Window& window, const Window& display_window, double max_length,
+                              std::size_t& unusable, Workers& workers) {
+  const float outside = std::numeric_limits<float>::quiet_NaN();
+  const Plane<float> x = read_plane(pixels_of(files, channels[0]), window, outside, workers);
+  const Plane<float> y = read_plane(pixels_of(files, channels[1]), window, outside, workers);
+  return decode_motion(x, y, encoding, display_window, max_length, workers, unusable);
+}
+
+}  // namespace
+
+Present read_present(const Subject& subject, const FileSet& pixels, const Window& window, const Window& display_window,
+                     const ReadOptions& options, const ColorConversion* into_working_space, ForwardMemory& memory,
+                     std::size_t& vectors_bad, Workers& workers) {
+  Present present;
+  present.color = read_color(subject, pixels, window, workers);
+  if (into_working_space) into_working_space->apply(present.color, workers);
+  sanitize(present, workers);
+
+  Plane<float> depth;
+  if (options.use_depth && subject.depth) {
+    depth = read_plane(pixels_of(pixels, *subject.depth), window, std::numeric_limits<float>::infinity(), workers);
+    canonical_depth(depth, options.motion.depth_kind, subject.background_depth, workers);
+  }
+  if (!options.use_motion || (!subject.backward && !subject.forward)) {
+    present.depth = std::move(depth);
+    return present;
+  }
+
+  // Backward vectors from the file; or the previous frame's forward vectors turned round.
+  Plane<glm::vec2> motion;
+  if (subject.backward) {
+    motion = read_vectors(*subject.backward, subject.backward_encoding, pixels, window, display_window,
+                          options.motion.max_length, vectors_bad, workers);
+  } else {
+    Plane<glm::vec2> forward = read_vectors(*subject.forward, subject.forward_encoding, pixels, window, display_window,
+                                            options.motion.max_length, vectors_bad, workers);
+    motion = invert_forward_motion(memory.motion, memory.depth, forward);
+    memory = {std::move(forward), depth.empty() ? Plane<float>() : depth.clone()};
+  }
+  DilatedMotion dilated = dilate_motion(std::move(motion), depth, options.motion.dilation, workers);
+  present.motion = std::move(dilated.motion);
+  present.depth = std::move(dilated.depth);
+  return present;
+}
+
+}  // namespace varve

@@ -1,0 +1,36 @@
+// From the channels of a frame to what the passes work on: float, canonical conventions, sanitized.
+#pragma once
+
+#include <optional>
+
+#include "exr/channel_names.h"
+#include "exr/color_space.h"
+#include "exr/read_frame.h"
+#include "motion/motion.h"
+#include "resolve/present.h"
+
+namespace varve {
+
+/// Pixels of a frame, one entry per file (FrameHeaders::files).
+using FileSet = std::vector<FramePixels>;
+
+/// What reading one subject leaves to the next frame: needed where only forward vectors are in the file.
+struct ForwardMemory {
+  Plane<glm::vec2> motion;
+  Plane<float> depth;
+  bool empty() const { return motion.empty(); }
+};
+
+struct ReadOptions {
+  MotionParameters motion;
+  bool use_depth = false;   ///< depth is decoded and kept with the present
+  bool use_motion = false;
+};
+
+/// Converts one subject. `into_working_space` may be null. `memory` holds the previous frame's forward vectors where they are
+/// needed, and is replaced by this frame's; clear it at a restart. `vectors_bad` counts vectors that cannot be used.
+Present read_present(const Subject& subject, const FileSet& pixels, const Window& window, const Window& display_window,
+                     const ReadOptions& options, const ColorConversion* into_working_space, ForwardMemory& memory,
+                     std::size_t& vectors_bad, Workers& workers);
+
+}  // namespace varve

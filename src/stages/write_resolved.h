@@ -1,0 +1,51 @@
+// From resolved planes back to the channels of a file: stored types, diagnostics beside the color.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "diagnose/aov.h"
+#include "exr/channel_names.h"
+#include "exr/color_space.h"
+#include "exr/read_frame.h"
+#include "exr/write_frame.h"
+#include "resolve/accumulate.h"
+
+namespace varve {
+
+/// One subject, resolved.
+struct ResolvedSubject {
+  const Subject* subject = nullptr;
+  const Present* present = nullptr;
+  const Accumulated* accumulated = nullptr;
+};
+
+/// Parts ready for write_frame, and the planes they point to.
+struct FileOutput {
+  std::vector<OutputPart> parts;
+  std::deque<RawPlane> planes;
+  std::size_t half_overflows = 0;  ///< finite values beyond +-65504 that had to be held there
+};
+
+/// Channel of a diagnostic plane: "varve.count", with the layer where several are resolved and the view where it is not the
+/// default one: "varve.fg.count", "varve.left.motion.x".
+std::string aov_channel(const Aov& aov, const Subject& subject, bool several_layers, std::string_view component);
+
+/// The source's parts with the resolved color in place. With `keep`, other channels stand beside it and parts without a subject
+/// are copied; without, only resolved channels are written. `aovs` are added to each subject's part.
+FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels, const std::vector<ResolvedSubject>& subjects,
+                          const std::vector<const Aov*>& aovs, bool keep, const ColorConversion* out_of_working_space,
+                          Workers& workers);
+
+/// Only the diagnostic planes, in the parts of their subjects.
+FileOutput diagnostic_parts(const FileHeader& source, const std::vector<ResolvedSubject>& subjects,
+                            const std::vector<const Aov*>& aovs, Workers& workers);
+
+/// One component of a diagnostic plane as float, for pictures and for the writer. `reject` is a sum of bits, exact in float.
+Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubject& resolved, Workers& workers);
+
+/// Which planes accumulate() must fill for these.
+DiagnosticsWanted diagnostics_wanted(const std::vector<const Aov*>& aovs);
+
+}  // namespace varve

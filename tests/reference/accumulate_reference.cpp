@@ -1,0 +1,270 @@
+#include "reference/accumulate_reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/reject.h"
+#include "resolve/sample_weights.h"
+
+namespace varve::reference {
+namespace {
+
+Color color_of(const glm::vec4& c) { return {c.r, c.g, c.b, c.a}; }
+
+Color rotate(const Color& c, BoxSpace space) {
+  if (space == BoxSpace::rgb) return c;
+  return {c[0] / 4 + c[1] / 2 + c[2] / 4, c[0] / 2 - c[2] / 2, -c[0] / 4 + c[1] / 2 - c[2] / 4, c[3]};
+}
+
+Color rotate_back(const Color& c, BoxSpace space) {
+  if (space == BoxSpace::rgb) return c;
+  return {c[0] + c[1] - c[2], c[0] + c[2], c[0] - c[1] - c[2], c[3]};
+}
+
+/// Keys' cubic with a = -1/2, as a function of the distance.
+double keys(double t) {
+  t = std::abs(t);
+  if (t < 1) return 1.5 * t * t * t - 2.5 * t * t + 1;
+  if (t < 2) return -0.5 * t * t * t + 2.5 * t * t - 4 * t + 2;
+  return 0;
+}
+
+struct Fetched {
+  Color color{};
+  double total = 0, spread = 0;
+  unsigned reject = 0;
+};
+
+bool valid_history(const History& h, int x, int y) { return h.color.window().contains(x, y) && h.total.at(x, y) > 0; }
+
+bool same_surface(float a, float b, double tolerance) {
+  return a == b || std::abs(double(a) - double(b)) <= tolerance * std::min(double(a), double(b));
+}
+
+/// History at a position given in pixel centres (integer at a centre).
+Fetched fetch(const History& h, const Present& present, const RecursiveParameters& p, int x, int y) {
+  Fetched f;
+  const glm::vec2 motion = present.motion.empty() ? glm::vec2(0.0f) : present.motion.at(x, y);
+  if (!std::isfinite(motion.x) || !std::isfinite(motion.y)) {
+    f.reject = kRejectVector;
+    return f;
+  }
+  const double px = x + double(motion.x), py = y + double(motion.y);
+  const Window& w = h.color.window();
+  if (px < w.x0 - 0.5 || py < w.y0 - 0.5 || px > w.x1 - 0.5 || py > w.y1 - 0.5) {
+    f.reject = kRejectWindow;
+    return f;
+  }
+  const int bx = int(std::floor(px)), by = int(std::floor(py));
+  const double fx = px - bx, fy = py - by;
+
+  // The four around the position, each on its own merits.
+  const bool test_depth = p.disocclusion == Disocclusion::depth && !present.depth.empty() && !h.depth.empty();
+  double share = 0, youngest = std::numeric_limits<double>::infinity(), heaviest = 0;
+  Color mean{};
+  bool all = true, depth_failed = false;
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      const double weight = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
+      if (weight <= 0) continue;
+      bool good = valid_history(h, bx + i, by + j);
+      if (good && test_depth && !same_surface(h.depth.at(bx + i, by + j), present.depth.at(x, y), p.depth_tolerance)) {
+        good = false;
+        depth_failed = true;
+      }
+      if (!good) {
+        all = false;
+        continue;
+      }
+      share += weight;
+      youngest = std::min(youngest, double(h.total.at(bx + i, by + j)));
+      if (weight > heaviest) heaviest = weight, f.spread = h.spread.at(bx + i, by + j);
+      for (std::size_t k = 0; k < 4; ++k) mean[k] += weight * double(h.color.at(bx + i, by + j)[int(k)]);
+    }
+  if (share < 0.25) {
+    f.reject = depth_failed ? kRejectDepth : kRejectEmptyHistory;
+    f.spread = 0;
+    return f;
+  }
+  f.total = youngest;
+  for (std::size_t k = 0; k < 4; ++k) f.color[k] = mean[k] / share;
+
+  // Wider filters need all sixteen, and rows that are valid from end to end.
+  bool sixteen = all && bx - 1 >= w.x0 && bx + 2 < w.x1 && by - 1 >= w.y0 && by + 2 < w.y1;
+  for (int j = -1; sixteen && j <= 2; ++j)
+    for (int i = w.x0; i < w.x1; ++i) sixteen = sixteen && valid_history(h, i, by + j);
+  if (!sixteen || p.history_filter == HistoryFilter::bilinear) return f;
+
+  double weights = 0;
+  Color sum{};
+  for (int j = -1; j <= 2; ++j)
+    for (int i = -1; i <= 2; ++i) {
+      const bool corner = (i == -1 || i == 2) && (j == -1 || j == 2);
+      if (corner && p.history_filter == HistoryFilter::catmull_rom5) continue;
+      const double weight = keys(i - fx) * keys(j - fy);
+      weights += weight;
+      for (std::size_t k = 0; k < 4; ++k) sum[k] += weight * double(h.color.at(bx + i, by + j)[int(k)]);
+    }
+  for (std::size_t k = 0; k < 4; ++k) {
+    f.color[k] = sum[k] / weights;
+    if (!p.dering && k < 3) continue;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i < 2; ++i) {
+        const double tap = h.color.at(bx + i, by + j)[int(k)];
+        low = std::min(low, tap);
+        high = std::max(high, tap);
+      }
+    f.color[k] = std::clamp(f.color[k], low, high);
+  }
+  return f;
+}
+
+struct BoxBounds {
+  Color low, high, mean;
+};
+
+std::optional<BoxBounds> box_of(const Present& present, const RectifyParameters& p, int x, int y) {
+  std::vector<Color> samples;
+  const int r = p.window / 2;
+  for (int j = y - r; j <= y + r; ++j)
+    for (int i = x - r; i <= x + r; ++i)
+      if (present.color.window().contains(i, j) && present.valid.at(i, j) > 0)
+        samples.push_back(rotate(color_of(present.color.at(i, j)), p.space));
+  if (samples.empty()) return {};
+  BoxBounds b;
+  for (std::size_t k = 0; k < 4; ++k) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    long double sum = 0;
+    for (const Color& c : samples) low = std::min(low, c[k]), high = std::max(high, c[k]), sum += c[k];
+    const long double mean = sum / static_cast<long double>(samples.size());
+    long double m2 = 0;
+    for (const Color& c : samples) m2 += (c[k] - mean) * (c[k] - mean);
+    const double sigma = double(std::sqrt(m2 / static_cast<long double>(samples.size())));
+    b.mean[k] = p.box == Box::minmax ? low / 2 + high / 2 : double(mean);
+    b.low[k] = p.box == Box::minmax ? low : double(mean) - p.gamma * sigma;
+    b.high[k] = p.box == Box::minmax ? high : double(mean) + p.gamma * sigma;
+    if (p.box == Box::variance_minmax) b.low[k] = std::max(b.low[k], low), b.high[k] = std::min(b.high[k], high);
+  }
+  const double scale = std::max({std::abs(b.mean[0]), std::abs(b.mean[1]), std::abs(b.mean[2])});
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double floor = 1e-6 * (k < 3 ? scale : std::abs(b.mean[3]));
+    b.low[k] -= floor;
+    b.high[k] += floor;
+  }
+  return b;
+}
+
+double length3(const Color& c) { return std::hypot(c[0], c[1], c[2]); }
+
+/// Moves the history into the box; returns the clip distance.
+double rectify_color(Color& color, const Color& present, const BoxBounds& b, const RectifyParameters& p) {
+  const Color h = rotate(color, p.space);
+  bool inside = true;
+  for (std::size_t k = 0; k < 4; ++k) inside = inside && h[k] >= b.low[k] && h[k] <= b.high[k];
+  if (inside) return 0;
+  Color moved;
+  if (p.rule == BoxRule::clamp) {
+    for (std::size_t k = 0; k < 4; ++k) moved[k] = std::clamp(h[k], b.low[k], b.high[k]);
+  } else {
+    const Color target = p.anchor == BoxAnchor::mean ? b.mean : rotate(present, p.space);
+    double t = 1;
+    Color g;
+    for (std::size_t k = 0; k < 4; ++k) {
+      g[k] = std::clamp(target[k], b.low[k], b.high[k]);
+      if (h[k] > b.high[k]) t = std::min(t, (b.high[k] - g[k]) / (h[k] - g[k]));
+      if (h[k] < b.low[k]) t = std::min(t, (g[k] - b.low[k]) / (g[k] - h[k]));
+    }
+    for (std::size_t k = 0; k < 4; ++k) moved[k] = g[k] + t * (h[k] - g[k]);
+  }
+  const Color before = color;
+  color = rotate_back(moved, p.space);
+  const Color change{color[0] - before[0], color[1] - before[1], color[2] - before[2], 0};
+  const double scale = std::max(length3(before), length3(color));
+  return scale > 0 ? length3(change) / scale : 0;
+}
+
+/// The present at a pixel centre: its own sample, or the weighted samples around (math, section 5).
+Color present_at(const Present& present, SampleFilter filter, std::optional<glm::dvec2> jitter, int x, int y, double& weight) {
+  weight = present.valid.at(x, y) > 0 ? 1 : 0;
+  const Color own = color_of(present.color.at(x, y));
+  if (filter == SampleFilter::none || !jitter) return own;
+  for (const bool positive : {false, true}) {
+    double total = 0;
+    Color sum{};
+    for (int j = y - 3; j <= y + 3; ++j)
+      for (int i = x - 3; i <= x + 3; ++i) {
+        if (!present.color.window().contains(i, j) || !(present.valid.at(i, j) > 0)) continue;
+        const double w = reconstruction_kernel(filter, i + jitter->x - x) * reconstruction_kernel(filter, j + jitter->y - y);
+        if (positive && w < 0) continue;
+        total += w;
+        for (std::size_t k = 0; k < 4; ++k) sum[k] += w * double(present.color.at(i, j)[int(k)]);
+      }
+    if (total < 0.1 && !positive) continue;
+    if (total <= 0) {
+      weight = 0;
+      return own;
+    }
+    weight = weight > 0 ? total : 0;
+    for (double& s : sum) s /= total;
+    return sum;
+  }
+  return own;
+}
+
+}  // namespace
+
+Pixel accumulate_pixel(const Present& present, const History& previous, const RecursiveParameters& p,
+                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x, int y) {
+  Pixel out;
+  double w = 1;
+  const Color now = present_at(present, p.sample_filter, jitter, x, y, w);
+  Fetched past;
+  if (previous.empty())
+    past.reject = restart_bit;
+  else
+    past = fetch(previous, present, p, x, y);
+  out.reject = past.reject | (present.valid.at(x, y) > 0 ? 0u : unsigned(kRejectPresent));
+  if (past.total <= 0) {
+    out.color = now;
+    out.total = w;
+    out.spread = present.valid.at(x, y) > 0 ? 1 : 0;
+    return out;
+  }
+  if (rectify.box != Box::none)
+    if (const auto box = box_of(present, rectify, x, y)) out.clip = rectify_color(past.color, now, *box, rectify);
+
+  const double steady = p.alpha * w / (1 - p.alpha + p.alpha * w);
+  const double a = w > 0 ? (p.alpha_rule == AlphaRule::fixed ? steady : std::max(steady, w / (past.total + w))) : 0;
+  for (std::size_t k = 0; k < 4; ++k) out.color[k] = (1 - a) * past.color[k] + a * now[k];
+  out.total = past.total + w;
+  out.spread = past.spread * (1 - a) * (1 - a) + a * a;
+  out.weight = 1 - a;
+  return out;
+}
+
+glm::vec2 dilated_motion(const Plane<glm::vec2>& motion, const Plane<float>& depth, Dilation dilation, int x, int y) {
+  glm::vec2 best = motion.at(x, y);
+  if (dilation == Dilation::none || (dilation == Dilation::nearest && depth.empty())) return best;
+  bool found = std::isfinite(best.x);
+  double best_length = found ? std::hypot(double(best.x), double(best.y)) : 0;
+  double best_depth = found && dilation == Dilation::nearest ? double(depth.at(x, y)) : 0;
+  for (int j = y - 1; j <= y + 1; ++j)
+    for (int i = x - 1; i <= x + 1; ++i) {
+      if (!motion.window().contains(i, j) || !std::isfinite(motion.at(i, j).x)) continue;
+      const glm::vec2 v = motion.at(i, j);
+      const double length = std::hypot(double(v.x), double(v.y));
+      const double z = dilation == Dilation::nearest ? double(depth.at(i, j)) : 0;
+      if (!found || (dilation == Dilation::longest ? length > best_length : z < best_depth)) {
+        best = v;
+        best_length = length;
+        best_depth = z;
+        found = true;
+      }
+    }
+  return best;
+}
+
+}  // namespace varve::reference

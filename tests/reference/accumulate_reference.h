@@ -1,0 +1,29 @@
+// The slow twin of the recursive accumulator: one pixel at a time, in double, straight from the equations.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include <glm/vec2.hpp>
+
+#include "motion/motion.h"
+#include "resolve/accumulate.h"
+
+namespace varve::reference {
+
+using Color = std::array<double, 4>;
+
+struct Pixel {
+  Color color{};
+  double total = 0, spread = 0, clip = 0, weight = 0;
+  unsigned reject = 0;
+};
+
+/// What accumulate() must give at (x, y), display coordinates.
+Pixel accumulate_pixel(const Present& present, const History& previous, const RecursiveParameters& recursive,
+                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x, int y);
+
+/// The vector a pixel follows, by looking at all nine.
+glm::vec2 dilated_motion(const Plane<glm::vec2>& motion, const Plane<float>& depth, Dilation dilation, int x, int y);
+
+}  // namespace varve::reference
