@@ -44,10 +44,14 @@ int run_resolve(Settings& settings) {
   Progress progress(settings.progress, settings.quiet);
   std::vector<std::string> rows;
   ResolveEvents events;
-  if (settings.verbose)
-    events.planned = [](const SequenceInfo& info, const Plan& plan) {
-      std::fputs(describe_text(info, plan, {}).c_str(), stderr);
-    };
+  events.planned = [&](const SequenceInfo& info, const Plan& plan) {
+    if (settings.verbose) std::fputs(describe_text(info, plan, {}).c_str(), stderr);
+    if (!plan.use_motion)
+      progress.warning(
+          "there are no motion vectors, so history is taken from the same pixel, which suits only what rests; name "
+          "them "
+          "with --map motion.x=CHANNEL and motion.y, or give --motion-file");
+  };
   events.frame = [&](const FrameReport& report, int done, int total) {
     progress.frame(report, done, total);
     if (!settings.report.empty()) rows.push_back(frame_json(report));
