@@ -46,11 +46,6 @@ int run_resolve(Settings& settings) {
   ResolveEvents events;
   events.planned = [&](const SequenceInfo& info, const Plan& plan) {
     if (settings.verbose) std::fputs(describe_text(info, plan, {}).c_str(), stderr);
-    if (!plan.use_motion)
-      progress.warning(
-          "there are no motion vectors, so history is taken from the same pixel, which suits only what rests; name "
-          "them "
-          "with --map motion.x=CHANNEL and motion.y, or give --motion-file");
   };
   events.frame = [&](const FrameReport& report, int done, int total) {
     progress.frame(report, done, total);

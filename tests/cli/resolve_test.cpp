@@ -128,11 +128,14 @@ TEST_F(Resolve, DiagnosticsInsideAndApart) {
   expect_only_whole_files();
 }
 
-TEST_F(Resolve, WithoutVectorsItWarns) {
+TEST_F(Resolve, WithoutVectorsOnlyWhenToldSo) {
   write_small_sequence(folder.path(), {.with_vectors = false});
-  const Outcome outcome = run();
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_NE(outcome.err.find("varve: warning: there are no motion vectors"), std::string::npos) << outcome.err;
+  const Outcome refused = run();
+  EXPECT_EQ(refused.code, 4);
+  EXPECT_NE(refused.err.find("no motion vectors"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("--convention none"), std::string::npos) << refused.err;
+  EXPECT_TRUE(files_below(folder / "out").empty());
+  EXPECT_EQ(run({"--convention", "none"}).code, 0);
 }
 
 TEST_F(Resolve, ProgressStyles) {
