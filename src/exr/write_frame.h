@@ -26,7 +26,7 @@ struct OutputPart {
 };
 
 struct WriteOptions {
-  int zip_level = 4;  ///< 1..9, libdeflate's scale
+  int zip_level = 1;  ///< 1..9, libdeflate's scale; 1 costs a third less to encode than 4 for files 2 % larger
   std::vector<std::pair<std::string, std::string>> attributes;  ///< strings set in the first part (provenance)
 };
 

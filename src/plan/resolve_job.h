@@ -24,7 +24,7 @@ struct ResolveJob {
   Parameters parameters;
   OutputRequest request;
   std::optional<Compression> compression;
-  int zip_level = 4;
+  int zip_level = 1;
   std::string ocio_config, from_space, to_space;  ///< color conversion around the resolve; empty: none
   std::string preview_folder;                     ///< PNG of color and diagnostics; empty: none
   std::string display, view;                      ///< OpenColorIO display and view of the previews; empty: the config's default

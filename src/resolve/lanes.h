@@ -39,12 +39,18 @@ VARVE_INLINE Double4 square_root(Double4 v) {
 VARVE_INLINE double biggest(double a, double b) { return a > b ? a : b; }
 VARVE_INLINE double smallest(double a, double b) { return a < b ? a : b; }
 
-/// True when no lane is NaN or infinite.
+/// True when no lane is NaN or infinite: the difference to itself is then 0, else NaN.
 VARVE_INLINE bool finite(Float4 v) {
-  const Float4 zero = v - v;  // NaN in every lane that is not finite
-  return zero[0] == 0 && zero[1] == 0 && zero[2] == 0 && zero[3] == 0;
+  const Float4 zero = v - v;
+  return (zero[0] + zero[1]) + (zero[2] + zero[3]) == 0;
 }
-VARVE_INLINE bool all_true(Mask4 m) { return (m[0] & m[1] & m[2] & m[3]) != 0; }
+VARVE_INLINE bool all_true(Mask4 m) {
+#if defined(__AVX__)
+  return __builtin_ia32_movmskpd256(Double4(m)) == 15;
+#else
+  return (m[0] & m[1] & m[2] & m[3]) != 0;
+#endif
+}
 VARVE_INLINE double least_lane(Double4 v) {
   const double a = v[0] < v[1] ? v[0] : v[1], b = v[2] < v[3] ? v[2] : v[3];
   return a < b ? a : b;
