@@ -126,12 +126,13 @@ ChannelIndex index_channels(std::span<const FileHeader> files) {
       const std::vector<std::string> from_part = part_path(file, part);
       for (int c = 0; c < int(part.channels.size()); ++c) {
         const Channel& channel = part.channels[std::size_t(c)];
-        if (channel.x_sampling != 1 || channel.y_sampling != 1) continue;
         PlacedName placed = place(file, part, from_part, channel.name);
         const auto [entry, fresh] = known.emplace(Key{f, p, placed.view, placed.path}, index.groups.size());
         if (fresh)
-          index.groups.push_back({f, p, std::move(placed.view), std::move(placed.path), placed.part_elements, {}});
-        index.groups[entry->second].members.push_back({std::move(placed.base), {f, p, c}, channel.type});
+          index.groups.push_back({f, p, std::move(placed.view), std::move(placed.path), placed.part_elements, {}, {}});
+        ChannelGroup& group = index.groups[entry->second];
+        const bool whole = channel.x_sampling == 1 && channel.y_sampling == 1;
+        (whole ? group.members : group.subsampled).push_back({std::move(placed.base), {f, p, c}, channel.type});
       }
     }
   }

@@ -32,6 +32,7 @@ struct ChannelGroup {
     PixelType type = PixelType::float16;
   };
   std::vector<Member> members;
+  std::vector<Member> subsampled;  ///< channels without a value at every pixel: passed through, never resolved
 
   /// The float channel of that base name (lower case); none if there is none.
   std::optional<ChannelRef> find(std::string_view base) const;
@@ -41,7 +42,7 @@ struct ChannelGroup {
 
 struct ChannelIndex {
   std::span<const FileHeader> files;
-  std::vector<ChannelGroup> groups;  ///< in file order; deep parts and subsampled channels are left out
+  std::vector<ChannelGroup> groups;  ///< in file order; deep parts are left out
   std::vector<std::string> views;    ///< of file 0, default first; empty if it has none
 
   /// A channel of view b may serve a color of view a. What has no view serves only where there is one view at most.

@@ -76,7 +76,18 @@ std::vector<ColorLayer> color_layers(const ChannelIndex& index) {
   return found;
 }
 
+// Luminance and chroma, or colors stored at every second pixel: resolving what is whole would leave the rest behind.
+void refuse_subsampled_color(const ChannelIndex& index, const ChannelGroup& group) {
+  for (const ChannelGroup::Member& member : group.subsampled)
+    if (const ChannelClass kind = classify(index.channel(member.ref));
+        may_be_color(group) && (kind == ChannelClass::color || kind == ChannelClass::alpha))
+      throw Failure(ExitCode::inconsistent,
+                    index.files.front().path + ": the color channel " + index.name(member.ref) +
+                        " is subsampled, it has no value at every pixel; convert the file to plain RGBA first");
+}
+
 [[noreturn]] void refuse_without_color(const ChannelIndex& index) {
+  for (const ChannelGroup& group : index.groups) refuse_subsampled_color(index, group);
   const FileHeader& file = index.files.front();
   std::vector<std::string> names;
   bool deep = false;
@@ -250,6 +261,12 @@ Subject make_subject(const ChannelIndex& index, const ChosenColor& chosen, bool 
       std::count_if(subject.color.begin(), subject.color.begin() + 3, [](const auto& c) { return c.has_value(); });
   if (count < 3) subject.notes.push_back("color: only " + names + " found, resolved as it is");
   if (!chosen.note.empty()) subject.notes.push_back(chosen.note);
+  for (const ChannelGroup& other : index.groups)
+    for (const ChannelGroup::Member& member : other.subsampled)
+      if (const ChannelClass kind = classify(index.channel(member.ref));
+          kind == ChannelClass::depth || kind == ChannelClass::motion)
+        subject.notes.push_back(index.name(member.ref) +
+                                " is subsampled, it has no value at every pixel, and is not used");
   return subject;
 }
 
@@ -276,6 +293,7 @@ std::vector<Subject> find_subjects(std::span<const FileHeader> files, const Role
     const std::vector<ColorLayer> layers = color_layers(index);
     if (layers.empty()) refuse_without_color(index);
     chosen = choose_colors(index, layers, request);
+    for (const ChosenColor& color : chosen) refuse_subsampled_color(index, *color.color.group);
   }
   std::vector<Subject> subjects;
   for (const ChosenColor& color : chosen) {

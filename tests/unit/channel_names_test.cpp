@@ -301,6 +301,28 @@ TEST(Subjects, OneChannelAndNone) {
   EXPECT_NE(message_of([&] { find({file_of({deep})}); }).find("deep"), std::string::npos);
 }
 
+TEST(Subjects, SubsampledColorIsRefusedAndSubsampledDataIsTold) {
+  const auto with_half = [](std::vector<std::string> names, const std::set<std::string>& halved) {
+    Part part = part_of(names);
+    for (Channel& channel : part.channels)
+      if (halved.contains(channel.name)) channel.x_sampling = channel.y_sampling = 2;
+    return std::vector<FileHeader>{file_of({part})};
+  };
+  // Luminance and chroma; one color of three; all of them. What is whole is never resolved alone.
+  for (const auto& [files, culprit] : {std::pair{with_half({"Y", "RY", "BY", "A"}, {"RY", "BY"}), "RY"},
+                                       std::pair{with_half({"R", "G", "B"}, {"B"}), "channel B"},
+                                       std::pair{with_half({"R", "G", "B"}, {"R", "G", "B"}), "channel R"}}) {
+    const std::string message = message_of([&] { find(files); });
+    EXPECT_NE(message.find("subsampled"), std::string::npos) << message;
+    EXPECT_NE(message.find(culprit), std::string::npos) << message;
+  }
+  // Other layers, and what is only passed through, may be as they like.
+  EXPECT_EQ(find(with_half({"R", "G", "B", "fog.R", "fog.G", "fog.B"}, {"fog.R", "fog.G", "fog.B"})).size(), 1u);
+  const std::vector<FileHeader> depth = with_half({"R", "G", "B", "Z"}, {"Z"});
+  EXPECT_FALSE(find(depth)[0].depth);
+  EXPECT_TRUE(notes_mention(find(depth)[0], "Z is subsampled"));
+}
+
 TEST(Subjects, OddNamesDoNotBreakAnything) {
   for (const char* odd :
        {"", ".", "..", "R.", ".R", "R..G", "....", "left", "left.", "Vector", "Vector.", "forward.u", "\xFF\xFE.Z"}) {
