@@ -187,7 +187,7 @@ void add_diagnostic_options(std::vector<Option>& rows) {
   add({"report", 0, "FILE", kResolve, kAdvanced, group,
        "Write a JSON file with one row for each frame: times in seconds and counts of pixels.",
        text(
-           [](auto& s) -> auto& { return s.report; }, "a file name")})
+           [](auto& s) -> auto& { return s.job.report; }, "a file name")})
       .completes = Completes::files;
 }
 

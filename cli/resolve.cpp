@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "commands.h"
-#include "exr/write_frame.h"
 #include "plan/describe.h"
 #include "progress.h"
 #include "report.h"
@@ -49,13 +48,10 @@ int run_resolve(Settings& settings) {
   };
   events.frame = [&](const FrameReport& report, int done, int total) {
     progress.frame(report, done, total);
-    if (!settings.report.empty()) rows.push_back(frame_json(report));
+    if (!settings.job.report.empty()) rows.push_back(frame_json(report));
   };
   events.warning = [&](const std::string& sentence) { progress.warning(sentence); };
   events.should_stop = [] { return stop_signal() != 0; };
-
-  // A report that cannot be written is told now, not after hours of work.
-  if (!settings.report.empty()) check_writable(settings.report);
 
   watch_signals(output_folders(settings.job));
   ResolveSummary summary;
@@ -64,11 +60,11 @@ int run_resolve(Settings& settings) {
   } catch (...) {
     // What was written before stays valid, and so does its report.
     progress.leave_line();
-    if (!rows.empty()) write_report(settings.report, rows);
+    if (!rows.empty()) write_report(settings.job.report, rows);
     throw;
   }
   progress.summary(summary);
-  if (!settings.report.empty()) write_report(settings.report, rows);
+  if (!settings.job.report.empty()) write_report(settings.job.report, rows);
   return summary.stopped ? 128 + stop_signal() : int(ExitCode::done);
 }
 

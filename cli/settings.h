@@ -16,7 +16,6 @@ struct Settings {
   std::optional<SequencePattern> depth_files, motion_files;
   bool dry_run = false;
   ProgressStyle progress = ProgressStyle::automatic;
-  std::string report;  ///< path of the JSON report; empty: none
   bool quiet = false, verbose = false;
 
   int pixels = 0;  ///< frames whose pixels probe measures

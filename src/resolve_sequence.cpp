@@ -71,13 +71,18 @@ Setup set_up(const ResolveJob& job) {
   Plan plan = make_plan(info, job.parameters, job.request, job.threads);
   Setup s{job, std::move(info), std::move(plan), jitter, {}, {}, chosen_aovs(job.request), {}, {}, {}};
   s.parameters = describe_parameters(job, s.info);
-  s.hash = hash_of(s.parameters);
+  s.hash = hash_of(s.parameters + describe_side_inputs(job));
   // Around the resolve: from the input's space to scene-linear, and from there to the output's.
   if (!job.from_space.empty()) s.into_working_space = ColorConversion::between(job.ocio_config, job.from_space, "");
   const std::string& to = job.to_space.empty() ? job.from_space : job.to_space;
   if (!to.empty()) s.out_of_working_space = ColorConversion::between(job.ocio_config, "scene_linear", to);
   if (!job.preview_folder.empty() && (!job.ocio_config.empty() || std::getenv("OCIO")))
     s.display = DisplayTransform::make(job.ocio_config, "", job.display, job.view);
+  else if (!job.display.empty() || !job.view.empty())
+    throw Failure(
+        ExitCode::usage,
+        "--display and --view choose how --preview shows colors and need an OpenColorIO config; give --preview, and "
+        "a config with --ocio or the environment variable OCIO");
   return s;
 }
 
@@ -125,6 +130,16 @@ std::vector<ChannelRef> channels_to_read(const Setup& s, const FrameHeaders& hea
     }
   }
   return wanted;
+}
+
+/// Names the frame in what a stage has to say: file names alone need not tell it.
+template <typename Work>
+auto in_frame(int frame, Work work) {
+  try {
+    return work();
+  } catch (const Failure& failure) {
+    throw Failure(failure.code(), "frame " + std::to_string(frame) + ": " + failure.what());
+  }
 }
 
 FileSet read_pixels(const Setup& s, const FrameHeaders& headers, Workers& workers) {
@@ -208,7 +223,7 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
   Workers workers(job.threads);
   std::vector<SubjectState> states(s.info.first.subjects.size());
   ResolveSummary summary;
-  int total = 0, done = 0, run_start = 0;
+  int total = 0, done = 0;
   for (const ScheduledFrame& scheduled : schedule) total += scheduled.write;
   const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
 
@@ -218,14 +233,12 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     report.frame = scheduled.frame;
     report.restart = scheduled.restart_reason;
     if (scheduled.write) report.path = job.output.path(scheduled.frame);
-    if (scheduled.restart) run_start = scheduled.frame;
     if (events.warning && scheduled.restart && scheduled.restart_reason.starts_with("gap"))
       events.warning("frame " + std::to_string(scheduled.frame) + ": " + scheduled.restart_reason +
                      "; its vectors lead to a frame that is not there, so the history starts anew");
 
     // A finished frame is read again only where a later one needs its history.
-    const bool feeds_history = i + 1 < schedule.size() && !schedule[i + 1].restart && !schedule[i + 1].complete;
-    bool needed = !scheduled.complete || feeds_history;
+    bool needed = !scheduled.complete;
     for (std::size_t k = i + 1; !needed && k < schedule.size() && !schedule[k].restart; ++k) needed = !schedule[k].complete;
     if (!needed) {
       report.skipped = true;
@@ -238,7 +251,7 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     Stopwatch clock;
     const FrameHeaders headers = read_frame_headers(job.input, scheduled.frame, job.roles, s.jitter);
     check_same_subjects(s.info.first, headers);
-    FileSet pixels = read_pixels(s, headers, workers);
+    FileSet pixels = in_frame(scheduled.frame, [&] { return read_pixels(s, headers, workers); });
     report.read_seconds = clock.lap();
     if (stop()) break;
 
@@ -254,10 +267,8 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
 
     // Write, and remember.
     if (scheduled.write && !scheduled.complete) {
-      std::vector<int> used;
-      for (std::size_t k = 0; k <= i; ++k)
-        if (schedule[k].frame >= run_start) used.push_back(schedule[k].frame);
-      write_outputs(s, headers, pixels, subjects, format_frame_list(used), report, workers);
+      in_frame(scheduled.frame,
+               [&] { write_outputs(s, headers, pixels, subjects, frames_used(schedule, i), report, workers); });
       report.write_seconds = clock.lap();
       report.written = true;
       ++summary.frames_written;

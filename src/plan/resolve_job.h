@@ -28,6 +28,7 @@ struct ResolveJob {
   std::string ocio_config, from_space, to_space;  ///< color conversion around the resolve; empty: none
   std::string preview_folder;                     ///< PNG of color and diagnostics; empty: none
   std::string display, view;                      ///< OpenColorIO display and view of the previews; empty: the config's default
+  std::string report;  ///< written by the caller when all is done; here only checked; empty: none
   bool resume = false;
   int threads = 0;                                ///< 0: every processor
 };

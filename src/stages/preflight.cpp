@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <set>
+#include <sstream>
 
 #include "base/error.h"
 #include "base/version.h"
@@ -14,12 +17,15 @@
 namespace varve {
 namespace {
 
-/// True when a finished file of the same parameters stands under the output's name.
-bool is_complete(const std::string& path, const std::string& hash) {
+/// True when a finished file of the same parameters and the same history stands under the output's name.
+bool is_complete(const std::string& path, const std::string& hash, const std::string& frames) {
   try {
     const FileHeader header = read_header(path);
-    const Attribute* found = header.parts.front().attribute("varve:hash");
-    return found && found->text == hash && has_every_chunk(path);
+    const auto says = [&](const char* name, const std::string& text) {
+      const Attribute* found = header.parts.front().attribute(name);
+      return found && found->text == text;
+    };
+    return says("varve:hash", hash) && says("varve:frames", frames) && has_every_chunk(path);
   } catch (const Failure&) {
     return false;
   }
@@ -76,12 +82,21 @@ std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const Sequenc
   std::vector<ScheduledFrame> schedule = frames_between(job, info);
   mark_restarts(schedule, job.cuts);
   if (job.resume) {
-    for (ScheduledFrame& s : schedule)
-      s.complete = s.write && is_complete(job.output.path(s.frame), hash) &&
-                   (!job.diagnostics || is_complete(job.diagnostics->path(s.frame), hash));
+    for (std::size_t i = 0; i < schedule.size(); ++i) {
+      ScheduledFrame& s = schedule[i];
+      const std::string frames = frames_used(schedule, i);
+      s.complete = s.write && is_complete(job.output.path(s.frame), hash, frames) &&
+                   (!job.diagnostics || is_complete(job.diagnostics->path(s.frame), hash, frames));
+    }
     drop_finished(schedule);
   }
   return schedule;
+}
+
+std::string frames_used(const std::vector<ScheduledFrame>& schedule, std::size_t index) {
+  std::vector<int> frames = {schedule[index].frame};
+  while (!schedule[index].restart && index > 0) frames.push_back(schedule[--index].frame);
+  return format_frame_list(frames);
 }
 
 std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info) {
@@ -91,7 +106,7 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   std::vector<int> cuts = job.cuts;
   std::sort(cuts.begin(), cuts.end());
   if (!cuts.empty()) text += " cuts=" + format_frame_list(cuts);
-  text += " jitter=" + info.jitter_source + " convention=" + job.roles.convention;
+  text += " jitter=" + std::filesystem::path(job.jitter).filename().string() + " convention=" + job.roles.convention;
   for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
   for (const auto& [role, channel] : job.roles.map) text += " map:" + role + "=" + channel;
   for (const Subject& subject : info.first.subjects) {
@@ -108,6 +123,24 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   text += " zip-level=" + std::to_string(job.zip_level);
   if (!job.from_space.empty()) text += " from-space=" + job.from_space;
   if (!job.to_space.empty()) text += " to-space=" + job.to_space;
+  return text;
+}
+
+std::string describe_side_inputs(const ResolveJob& job) {
+  std::string text;
+  for (const SequencePattern& role : job.input.roles)
+    text += " role:" + std::filesystem::path(role.text()).filename().string();
+  const bool converts = !job.from_space.empty() || !job.to_space.empty();
+  const char* variable = std::getenv("OCIO");
+  const std::string config = !converts ? "" : job.ocio_config.empty() && variable ? variable : job.ocio_config;
+  for (const std::string& path : {job.jitter, config}) {
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(path, none)) continue;
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    text += " file:" + bytes.str();
+  }
   return text;
 }
 
@@ -162,6 +195,12 @@ void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& sch
   std::set<std::filesystem::path> outputs;
   check(job.output, "--output", outputs);
   if (job.diagnostics) check(*job.diagnostics, "--diagnostics", outputs);
+  if (!job.preview_folder.empty()) check_writable(job.preview_folder + "/color.png");
+  if (job.report.empty()) return;
+  if (inputs.contains(canonical(job.report)) || outputs.contains(canonical(job.report)))
+    throw Failure(ExitCode::usage,
+                  "the report '" + job.report + "' is one of the frames read or written; give --report another name");
+  check_writable(job.report);
 }
 
 }  // namespace varve

@@ -21,8 +21,19 @@ struct ScheduledFrame {
 /// With --resume, frames that no unfinished frame depends on are left out.
 std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash);
 
-/// Everything that decides the pixels, as text, and its hash (FNV-1a, 64 bits, hex). Equal hash: equal output.
+/// The frames that schedule[index] is made from, back to its restart, as a frame list.
+std::string frames_used(const std::vector<ScheduledFrame>& schedule, std::size_t index);
+
+/// Every choice that decides the pixels, as text. Names of files come without their folders, so that equal work gives
+/// equal bytes wherever it is done.
 std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info);
+
+/// What decides the pixels from beside the frames: names of the role files, contents of the jitter table and of the
+/// color config (not of the tables that the config refers to). For the hash only.
+std::string describe_side_inputs(const ResolveJob& job);
+
+/// FNV-1a, 64 bits, hex, of the text and the version. Equal hash: equal output, as long as the frames that are read do
+/// not change.
 std::string hash_of(const std::string& text);
 
 /// Several frames without vectors would be averaged as if nothing moved: that is done only when asked for

@@ -93,9 +93,20 @@ void add_color(FileOutput& out, OutputPart& to, const Part& part, const Resolved
   out.half_overflows += overflows;
 }
 
-/// The part's other channels as they were, unless one of that name is written already.
-void add_kept(OutputPart& to, const Part& part, const std::vector<RawPlane>& pixels) {
-  std::set<std::string> taken;
+/// Diagnostic planes that an earlier resolve, of this layer or of several, may have left for a subject: they say
+/// nothing of this one.
+std::set<std::string> stale_diagnostics(const Subject& subject) {
+  std::set<std::string> names;
+  for (const Aov& aov : diagnostic_aovs())
+    for (const bool several : {false, true})
+      for (int k = 0; k < std::max(1, int(aov.components.size())); ++k)
+        names.insert(
+            aov_channel(aov, subject, several, aov.components.empty() ? "" : aov.components.substr(std::size_t(k), 1)));
+  return names;
+}
+
+/// The part's other channels as they were, unless one of that name is written already or is out of date.
+void add_kept(OutputPart& to, const Part& part, const std::vector<RawPlane>& pixels, std::set<std::string> taken) {
   for (const OutputChannel& channel : to.channels) taken.insert(channel.channel.name);
   for (std::size_t c = 0; c < part.channels.size(); ++c)
     if (!taken.contains(part.channels[c].name)) to.channels.push_back({part.channels[c], &pixels[c]});
@@ -121,14 +132,16 @@ FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels, c
     const Part& part = source.parts[std::size_t(p)];
     OutputPart to;
     to.source_part = p;
+    std::set<std::string> stale;
     for (const ResolvedSubject& resolved : subjects) {
       if (part_of(*resolved.subject) != p) continue;
+      stale.merge(stale_diagnostics(*resolved.subject));
       add_color(out, to, part, resolved, out_of_working_space, workers);
       add_diagnostics(out, to, resolved, aovs, several, workers);
     }
     to.copy_chunks = to.channels.empty();
     if (to.copy_chunks && !keep) continue;
-    if (!to.copy_chunks && keep) add_kept(to, part, pixels.planes[std::size_t(p)]);
+    if (!to.copy_chunks && keep) add_kept(to, part, pixels.planes[std::size_t(p)], std::move(stale));
     out.parts.push_back(std::move(to));
   }
   return out;

@@ -114,6 +114,50 @@ TEST_F(Resolve, ResumeDoesOnlyWhatIsMissing) {
   expect_only_whole_files();
 }
 
+TEST_F(Resolve, ResumeKnowsAnotherHistoryAndOtherSideFiles) {
+  const auto write_jitter = [&](const char* first) {
+    std::ofstream table(folder / "j.csv");
+    table << "frame,jx,jy\n" << first << "\n";
+    for (int frame = 2; frame <= 8; ++frame) table << frame << ",0,0\n";
+  };
+  const auto skipped = [&](const Arguments& more) {
+    const Outcome outcome = run(with(more, {"--resume"}));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = outcome.err.find("complete already, skipped", at)) != std::string::npos; ++at)
+      ++count;
+    return count;
+  };
+  // A frame that was missing and has come since changes every later one, and no earlier one.
+  fs::rename(folder / "in.0004.exr", folder / "late");
+  ASSERT_EQ(run().code, 0);
+  fs::rename(folder / "late", folder / "in.0004.exr");
+  EXPECT_EQ(skipped({}), 3u);
+  const std::string resumed = bytes_of(output(8));
+  ASSERT_EQ(run().code, 0);
+  EXPECT_EQ(bytes_of(output(8)), resumed);
+  // More frames of a shot that is being rendered leave the finished ones as they are.
+  ASSERT_EQ(run({"--frames", "1-5"}).code, 0);
+  EXPECT_EQ(skipped({}), 8u);
+  // The numbers in a table count, not only its name; where it lies does not.
+  write_jitter("1,0,0");
+  ASSERT_EQ(run({"--jitter", "j.csv"}).code, 0);
+  EXPECT_EQ(skipped({"--jitter", "./j.csv"}), 8u);
+  write_jitter("1,0.25,0");
+  EXPECT_EQ(skipped({"--jitter", "j.csv"}), 0u);
+}
+
+TEST_F(Resolve, DiagnosticsOfAnEarlierResolveDoNotStay) {
+  ASSERT_EQ(run({"--aov", "all"}).code, 0);
+  ASSERT_EQ(run_varve({"resolve", "out/o.####.exr", "-o", "out/again.####.exr", "--aov", "weight"}, folder.path()).code,
+            0);
+  const std::string again = bytes_of(folder / "out/again.0004.exr");
+  EXPECT_NE(again.find("varve.weight"), std::string::npos);
+  EXPECT_EQ(again.find("varve.count"), std::string::npos);
+  EXPECT_EQ(again.find("varve.motion.x"), std::string::npos);
+  EXPECT_NE(again.find("ViewLayer.IndexOB.X"), std::string::npos);
+}
+
 TEST_F(Resolve, DiagnosticsInsideAndApart) {
   ASSERT_EQ(run({"--aov", "count,reject"}).code, 0);
   const std::string inside = bytes_of(output(2));
@@ -180,7 +224,7 @@ const std::vector<Damage>& damages() {
        [](const Folder& f) { fs::resize_file(f / "in.0005.exr", fs::file_size(f / "in.0005.exr") / 2); },
        {},
        3,
-       "in.0005.exr"},
+       "frame 5: 'in.0005.exr'"},
       {"empty file", [](const Folder& f) { fs::resize_file(f / "in.0005.exr", 0); }, {}, 3, "in.0005.exr"},
       {"garbage",
        [](const Folder& f) { std::ofstream(f / "in.0003.exr") << "this is no picture"; },
@@ -227,6 +271,10 @@ const std::vector<Damage>& damages() {
        3,
        "missing.ocio"},
       {"report in a folder that is not there", nothing, {"--report", "nowhere/report.json"}, 5, "nowhere"},
+      {"report over an input", nothing, {"--report", "in.0003.exr"}, 2, "in.0003.exr"},
+      {"report over an output", nothing, {"--report", "out/../out/o.0003.exr"}, 2, "o.0003.exr"},
+      {"pictures in a folder that is not there", nothing, {"--preview", "nowhere"}, 5, "nowhere"},
+      {"a display without a config", nothing, {"--preview", "out", "--display", "sRGB"}, 2, "--display"},
   };
   return all;
 }
