@@ -63,7 +63,9 @@ void add_file_options(std::vector<Option>& rows) {
   add({"cuts", 0, "LIST", kResolve, kBasic, group, "First frames of new shots; history does not cross them.",
        frames([](auto& s) -> auto& { return s.job.cuts; })});
   add({"resume", 0, "", kResolve, kBasic, group,
-       "Skip frames whose output is complete and was made with the same parameters.",
+       "Skip frames whose output is complete and was made with the same parameters from the same frames. Frames that "
+       "were "
+       "rendered again under the same names are not noticed.",
        flag([](auto& s) -> auto& { return s.job.resume; })});
   add({"keep", 0, "WHICH", kResolve, kAdvanced, group, "What happens to channels that are not resolved.",
        word(

@@ -86,8 +86,8 @@ Setup set_up(const ResolveJob& job) {
   return s;
 }
 
-/// Frames of a sequence must agree on what is resolved; windows may move.
-void check_same_subjects(const FrameHeaders& first, const FrameHeaders& now) {
+/// Frames of a sequence must agree on what is resolved and on what that takes; windows may move.
+void check_same_subjects(const FrameHeaders& first, const FrameHeaders& now, const Plan& plan) {
   const std::string where = "frame " + std::to_string(now.frame) + " ('" + now.files.front().path + "')";
   if (now.subjects.size() != first.subjects.size())
     throw Failure(ExitCode::inconsistent, where + " has " + std::to_string(now.subjects.size()) + " color layers to resolve, frame " +
@@ -104,8 +104,9 @@ void check_same_subjects(const FrameHeaders& first, const FrameHeaders& now) {
         throw Failure(ExitCode::inconsistent, where + ", " + layer + ": channel " + "RGBA"[k] + " is " + (b.color[k] ? "there" : "missing") +
                                                   " but not so in frame " + std::to_string(first.frame) +
                                                   "; render it again, or leave it out with --frames");
-    if (a.backward.has_value() != b.backward.has_value() || a.forward.has_value() != b.forward.has_value() ||
-        a.depth.has_value() != b.depth.has_value())
+    const bool other_vectors =
+        a.backward.has_value() != b.backward.has_value() || a.forward.has_value() != b.forward.has_value();
+    if ((plan.use_motion && other_vectors) || (plan.use_depth && a.depth.has_value() != b.depth.has_value()))
       throw Failure(ExitCode::inconsistent, where + ", " + layer + ": its depth or motion channels are not those of frame " +
                                                 std::to_string(first.frame) + "; render it again, or leave it out with --frames");
   }
@@ -147,6 +148,14 @@ FileSet read_pixels(const Setup& s, const FrameHeaders& headers, Workers& worker
   for (int file = 0; file < int(headers.files.size()); ++file)
     pixels.push_back(read_channels(headers.files[std::size_t(file)], channels_to_read(s, headers, file), workers));
   return pixels;
+}
+
+/// A finished frame is read again only where a later one needs its history.
+bool is_needed(const std::vector<ScheduledFrame>& schedule, std::size_t index) {
+  bool needed = !schedule[index].complete;
+  for (std::size_t k = index + 1; !needed && k < schedule.size() && !schedule[k].restart; ++k)
+    needed = !schedule[k].complete;
+  return needed;
 }
 
 /// One subject: what stands in the files becomes the present, the present meets its history.
@@ -237,10 +246,7 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
       events.warning("frame " + std::to_string(scheduled.frame) + ": " + scheduled.restart_reason +
                      "; its vectors lead to a frame that is not there, so the history starts anew");
 
-    // A finished frame is read again only where a later one needs its history.
-    bool needed = !scheduled.complete;
-    for (std::size_t k = i + 1; !needed && k < schedule.size() && !schedule[k].restart; ++k) needed = !schedule[k].complete;
-    if (!needed) {
+    if (!is_needed(schedule, i)) {
       report.skipped = true;
       ++summary.frames_skipped;
       if (events.frame) events.frame(report, ++done, total);
@@ -250,7 +256,7 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     // Read.
     Stopwatch clock;
     const FrameHeaders headers = read_frame_headers(job.input, scheduled.frame, job.roles, s.jitter);
-    check_same_subjects(s.info.first, headers);
+    check_same_subjects(s.info.first, headers, s.plan);
     FileSet pixels = in_frame(scheduled.frame, [&] { return read_pixels(s, headers, workers); });
     report.read_seconds = clock.lap();
     if (stop()) break;

@@ -14,7 +14,7 @@ struct LayerAlias {
   ChannelClass holds;
 };
 
-// Layer names seen in files and in documentation (section C of the research on conventions), plus the words themselves.
+// Layer names seen in files and in documentation, plus the words themselves.
 constexpr LayerAlias kLayers[] = {
     {"combined", ChannelClass::color},
     {"rgba", ChannelClass::color},

@@ -172,6 +172,14 @@ TEST_F(Resolve, DiagnosticsInsideAndApart) {
   expect_only_whole_files();
 }
 
+TEST_F(Resolve, AFrameMayLackWhatIsNotUsed) {
+  write_small_frame(folder / "in.0006.exr", 6, {.with_depth = false});
+  EXPECT_EQ(run().code, 0);
+  EXPECT_EQ(bytes_of(output(6)).find("Depth"), std::string::npos);
+  EXPECT_NE(bytes_of(output(7)).find("Depth"), std::string::npos);
+  expect_refused(run({"--disocclusion", "depth"}), 4, "in.0006.exr");
+}
+
 TEST_F(Resolve, WithoutVectorsOnlyWhenToldSo) {
   write_small_sequence(folder.path(), {.with_vectors = false});
   const Outcome refused = run();
