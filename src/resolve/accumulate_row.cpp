@@ -19,10 +19,14 @@ void fetch_history(const AccumulateView& v, int y, const RowScratch& s) {
   }
   for (int x = 0; x < v.width; ++x) s.reject[x] = 0;
   switch (v.filter) {
-    case HistoryFilter::bilinear: return fetch_row<HistoryFilter::bilinear>(v, y, s);
-    case HistoryFilter::catmull_rom: return fetch_row<HistoryFilter::catmull_rom>(v, y, s);
-    case HistoryFilter::catmull_rom9: return fetch_row<HistoryFilter::catmull_rom9>(v, y, s);
-    case HistoryFilter::catmull_rom5: return fetch_row<HistoryFilter::catmull_rom5>(v, y, s);
+    case HistoryFilter::bilinear:
+      return fetch_row<HistoryFilter::bilinear>(v, y, s);
+    case HistoryFilter::catmull_rom:
+      return fetch_row<HistoryFilter::catmull_rom>(v, y, s);
+    case HistoryFilter::catmull_rom9:
+      return fetch_row<HistoryFilter::catmull_rom9>(v, y, s);
+    case HistoryFilter::catmull_rom5:
+      return fetch_row<HistoryFilter::catmull_rom5>(v, y, s);
   }
 }
 
@@ -61,9 +65,12 @@ void rectify(const AccumulateView& v, int y, const RowScratch& s, RowCounts& cou
       if (v.out_clip.origin)
         for (int x = 0; x < v.width; ++x) v.out_clip.origin[y * v.out_clip.stride + x] = 0;
       return;
-    case Box::minmax: return rectify_row<Box::minmax>(v, y, s, counts);
-    case Box::variance: return rectify_row<Box::variance>(v, y, s, counts);
-    case Box::variance_minmax: return rectify_row<Box::variance_minmax>(v, y, s, counts);
+    case Box::minmax:
+      return rectify_row<Box::minmax>(v, y, s, counts);
+    case Box::variance:
+      return rectify_row<Box::variance>(v, y, s, counts);
+    case Box::variance_minmax:
+      return rectify_row<Box::variance_minmax>(v, y, s, counts);
   }
 }
 
@@ -80,7 +87,9 @@ void blend_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& c
   for (int x = 0; x < v.width; ++x) {
     const Float4 present = load(v.color.origin + y * v.color.stride + 4 * x);
     const bool has_present = weight[x] > 0, has_history = s.total[x] > 0;
-    const double w = !has_present ? 0.0 : v.sample_weight.origin ? double(v.sample_weight.origin[y * v.sample_weight.stride + x]) : 1.0;
+    const double w = !has_present             ? 0.0
+                     : v.sample_weight.origin ? double(v.sample_weight.origin[y * v.sample_weight.stride + x])
+                                              : 1.0;
     Float4 color = present;
     double a = 1, total = w, spread = has_present ? 1 : 0;
     if (has_history) {

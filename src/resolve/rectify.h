@@ -5,9 +5,9 @@
 
 namespace varve::VARVE_ISA {
 
-/// Moves `h` to where the segment from h to the anchor enters the box. The anchor is the present held inside the box, or
-/// the mean: the present itself lies outside a variance box in every fourth pixel, and a segment that ends outside need
-/// not meet the box at all (math, 3.6). All four channels share one t, so alpha follows its color.
+/// Moves `h` to where the segment from h to the anchor enters the box. The anchor is the present held inside the box,
+/// or the mean: the present itself lies outside a variance box in every fourth pixel, and a segment that ends outside
+/// need not meet the box at all (math, 3.6). All four channels share one t, so alpha follows its color.
 VARVE_INLINE Double4 clip(const ColorBox& box, Double4 h, Double4 present, BoxAnchor anchor) {
   const Double4 target = anchor == BoxAnchor::mean ? box.mean : present;
   const Double4 g = least(greatest(target, box.low), box.high);

@@ -36,8 +36,8 @@ void add_diagnostics(FileOutput& out, OutputPart& part, const ResolvedSubject& r
       workers.for_rows(window.y0, window.y1,
                        [&](int y) { store_row(aov->type, values.row(y), plane.row(y - window.y0), window.width()); });
       const std::string_view component = aov->components.empty() ? "" : aov->components.substr(std::size_t(k), 1);
-      part.channels.push_back({{aov_channel(*aov, *resolved.subject, several_layers, component), aov->type, 1, 1, false},
-                               &plane});
+      part.channels.push_back(
+          {{aov_channel(*aov, *resolved.subject, several_layers, component), aov->type, 1, 1, false}, &plane});
     }
 }
 
@@ -112,9 +112,9 @@ std::string aov_channel(const Aov& aov, const Subject& subject, bool several, st
   return name;
 }
 
-FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels, const std::vector<ResolvedSubject>& subjects,
-                          const std::vector<const Aov*>& aovs, bool keep, const ColorConversion* out_of_working_space,
-                          Workers& workers) {
+FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
+                          const std::vector<ResolvedSubject>& subjects, const std::vector<const Aov*>& aovs, bool keep,
+                          const ColorConversion* out_of_working_space, Workers& workers) {
   FileOutput out;
   const bool several = several_layers(subjects);
   for (int p = 0; p < int(source.parts.size()); ++p) {
