@@ -119,6 +119,17 @@ std::string hash_of(const std::string& text) {
   return hex;
 }
 
+void check_vectors(const ResolveJob& job, const SequenceInfo& info) {
+  if (info.frames.size() < 2 || job.roles.convention == "none") return;
+  for (const Subject& subject : info.first.subjects)
+    if (!subject.backward && !subject.forward)
+      throw Failure(ExitCode::inconsistent,
+                    "'" + info.first.files.front().path + "' (frame " + std::to_string(info.first.frame) + ") has no motion vectors for " +
+                        (subject.layer.empty() ? "its color" : "layer '" + subject.layer + "'") +
+                        "; render them, name them with --map motion.x=CHANNEL or --motion-file, or say --convention none to "
+                        "resolve as if nothing moved");
+}
+
 void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& schedule) {
   std::set<std::filesystem::path> inputs;
   std::size_t writes = 0;

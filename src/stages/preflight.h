@@ -25,6 +25,10 @@ std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const Sequenc
 std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info);
 std::string hash_of(const std::string& text);
 
+/// Several frames without vectors would be averaged as if nothing moved: that is done only when asked for
+/// (--convention none). Throws Failure(inconsistent) naming the layer and the remedy.
+void check_vectors(const ResolveJob& job, const SequenceInfo& info);
+
 /// Outputs differ from inputs and from each other, folders can be written to. Throws Failure.
 void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& schedule);
 
