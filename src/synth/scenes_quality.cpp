@@ -22,7 +22,7 @@ double pulse(double time) {
 }
 
 Surface fence() {
-  Surface s = rectangle("fence", 42, 34, {Pattern::plain, {0.9, 0.9, 0.85}}, rests({-58, -22, 200}));
+  Surface s = rectangle("fence", 42, 34, {Pattern::plain, {0.85, 0.85, 0.8}}, rests({-58, -22, 200}));
   s.outline = Outline::bars;
   s.bar_pitch = 2.6;
   s.bar_width = 0.25;  // 0.3 to 0.5 pixels at this distance
@@ -33,8 +33,8 @@ Surface fence() {
 std::vector<Surface> resting_things() {
   std::vector<Surface> list;
   list.push_back(wall(640, bricks(34)));
-  list.push_back(ground(80, {Pattern::checker, {0.75, 0.73, 0.7}, {0.06, 0.07, 0.1}, 26}));
-  list.push_back(disc("zone plate", 84, {Pattern::zone_plate, {0.95, 0.95, 0.95}, {0.03, 0.03, 0.03}, 150},
+  list.push_back(ground(80, {Pattern::checker, {0.71, 0.69, 0.65}, {0.08, 0.09, 0.12}, 26}));
+  list.push_back(disc("zone plate", 84, {Pattern::zone_plate, {0.88, 0.88, 0.88}, {0.04, 0.04, 0.04}, 150},
                       rests({-190, -80, 639})));
   list.push_back(fence());
   return list;
