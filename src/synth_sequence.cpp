@@ -125,6 +125,12 @@ void check(const SynthJob& job, const Synth& synth) {
                   "the scene " + job.scene + " has one layer only; --layers is for scenes such as panes and crossing");
 }
 
+// Through memory, because GCC 12 drops the rounding of double(float(x)) where it vectorizes a pair of them.
+double as_float(double value) {
+  volatile float stored = float(value);
+  return double(stored);
+}
+
 // Rounded to float, which is what the attribute holds, so that file, table and sample agree to the last bit.
 glm::dvec2 jitter_at(const Synth& synth, int frame, int sample) {
   JitterSource source = synth.jitter;
@@ -138,7 +144,7 @@ glm::dvec2 jitter_at(const Synth& synth, int frame, int sample) {
     throw Failure(ExitCode::inconsistent, synth.job.jitter + " has no jitter for frame " + std::to_string(frame) +
                                               "; add it or choose --frames");
   const Jitter jitter = found.value_or(Jitter{});
-  return {double(float(jitter.x)), double(float(jitter.y))};
+  return {as_float(jitter.x), as_float(jitter.y)};
 }
 
 std::vector<double> numbers_of(const synth::Matrix& matrix) {

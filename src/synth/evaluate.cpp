@@ -182,9 +182,12 @@ void set_ways(const Moment& moment, const Hits& hits, const glm::dvec3& pixel, S
     sample.depth_before = sample.depth_after = hit.depth;
     return;
   }
-  sample.backward =
-      way(hit.placed->before, hit.placed->before_offset, hit, pixel, moment.time - 1, sample.depth_before);
-  sample.forward = way(hit.placed->after, hit.placed->after_offset, hit, pixel, moment.time + 1, sample.depth_after);
+  const PlacedSurface& p = *hit.placed;
+  sample.backward = way(p.before, p.before_offset, hit, pixel, moment.time - 1, sample.depth_before);
+  sample.forward = way(p.after, p.after_offset, hit, pixel, moment.time + 1, sample.depth_after);
+  // What rests has vectors of zero and not of rounding, so that a resolver can tell.
+  if (p.rests_before) sample.backward = glm::dvec2(0);
+  if (p.rests_after) sample.forward = glm::dvec2(0);
 }
 
 }  // namespace

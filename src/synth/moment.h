@@ -33,7 +33,8 @@ struct PlacedSurface {
   glm::dmat3 rotation;       ///< local to camera
   glm::dmat3 before, after;  ///< local to homogeneous pixels of the frames beside, as the vectors say
   glm::dvec3 before_offset, after_offset;
-  glm::dvec4 bounds{-1e30, -1e30, 1e30, 1e30};  ///< pixels x0, y0, x1, y1 outside of which it is not
+  bool rests_before = false, rests_after = false;  ///< vectors are zero, to the last bit
+  glm::dvec4 bounds{-1e30, -1e30, 1e30, 1e30};     ///< pixels x0, y0, x1, y1 outside of which it is not
   double brightness = 1;
 };
 

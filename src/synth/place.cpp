@@ -20,15 +20,21 @@ View view_at(const Shot& shot, double time, int width, int height) {
   return {inverse(camera.pose), lens_of(camera, width, height)};
 }
 
-// Where a point with these local coordinates lies in the picture of another frame, as the vectors have it.
-void set_way(const Surface& surface, const View& view, double now, double then, glm::dmat3& matrix,
-             glm::dvec3& offset) {
+/// Local coordinates to homogeneous pixels.
+struct Way {
+  glm::dmat3 matrix;
+  glm::dvec3 offset;
+  bool operator==(const Way&) const = default;
+};
+
+// Where a point with these local coordinates lies in the picture of some frame, as the vectors have it.
+Way way_to(const Surface& surface, const View& view, double now, double then) {
   Pose place = surface.motion(surface.vectors == Vectors::carrier ? now : then);
-  if (surface.vectors == Vectors::carrier && surface.carrier)
+  if (surface.vectors == Vectors::carrier && surface.carrier && now != then)
     place = surface.carrier(then) * inverse(surface.carrier(now)) * place;
   const Pose local_to_camera = view.to_camera * place;
-  matrix = view.lens * local_to_camera.rotation;
-  offset = surface.outline == Outline::sky ? glm::dvec3(0) : view.lens * local_to_camera.position;
+  return {view.lens * local_to_camera.rotation,
+          surface.outline == Outline::sky ? glm::dvec3(0) : view.lens * local_to_camera.position};
 }
 
 glm::dvec4 bounds_of(const Surface& surface, const Pose& local_to_camera, const glm::dmat3& lens) {
@@ -61,8 +67,16 @@ PlacedSurface place(const Surface& surface, const Moment& moment, const View& no
   else
     placed.to_local = glm::inverse(glm::dmat3(r[0], r[1], local_to_camera.position)) * moment.to_ray;
   placed.bounds = bounds_of(surface, local_to_camera, now.lens);
-  set_way(surface, before, moment.time, moment.time - 1, placed.before, placed.before_offset);
-  set_way(surface, after, moment.time, moment.time + 1, placed.after, placed.after_offset);
+  const double time = moment.time;
+  const Way here = way_to(surface, now, time, time), from = way_to(surface, before, time, time - 1),
+            to = way_to(surface, after, time, time + 1);
+  const bool sways = surface.sway.amplitude != 0 && surface.vectors != Vectors::carrier;
+  placed.before = from.matrix;
+  placed.before_offset = from.offset;
+  placed.rests_before = !sways && from == here;
+  placed.after = to.matrix;
+  placed.after_offset = to.offset;
+  placed.rests_after = !sways && to == here;
   placed.brightness = surface.brightness ? surface.brightness(moment.time) : 1;
   return placed;
 }
