@@ -1,5 +1,6 @@
 // THE table of options. Names, ranges and texts of the parameters come from knobs().
 #include "option_values.h"
+#include "synth_options.h"
 
 namespace varve::cli {
 namespace {
@@ -226,13 +227,13 @@ void add_run_options(std::vector<Option>& rows) {
   add({"json", 0, "", kProbe, kBasic, group, "Print JSON.", flag([](auto& s) -> auto& { return s.json; })});
   add({"dry-run", 'n', "", kResolve, kBasic, group, "Check the input, print the plan and write nothing.",
        flag([](auto& s) -> auto& { return s.dry_run; })});
-  add({"threads", 'j', "COUNT", kBoth, kAdvanced, group,
+  add({"threads", 'j', "COUNT", kBoth | kSynth, kAdvanced, group,
        "Threads to use; 0 takes every processor. The output is the same for any count.",
        number([](auto& s) -> auto& { return s.job.threads; }, {0, 1024})});
   add({"progress", 0, "STYLE", kResolve, kBasic, group, "How progress is told, on standard error.",
        word(
            [](auto& s) -> auto& { return s.progress; }, kProgressStyles)});
-  add({"quiet", 'q', "", kResolve, kBasic, group, "No progress, no warnings, no summary.",
+  add({"quiet", 'q', "", kResolve | kSynth, kBasic, group, "No progress, no warnings, no summary.",
        flag([](auto& s) -> auto& { return s.quiet; })});
   add({"verbose", 'v', "", kResolve, kBasic, group, "Print the plan before the work starts.",
        flag([](auto& s) -> auto& { return s.verbose; })});
@@ -255,6 +256,7 @@ void add_help_options(std::vector<Option>& rows) {
 std::vector<Option> option_table() {
   std::vector<Option> rows;
   add_file_options(rows);
+  add_synth_options(rows);
   add_channel_options(rows);
   add_parameter_options(rows);
   add_motion_options(rows);

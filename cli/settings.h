@@ -5,6 +5,7 @@
 #include <string>
 
 #include "resolve_sequence.h"
+#include "synth_sequence.h"
 
 namespace varve::cli {
 
@@ -21,6 +22,8 @@ struct Settings {
 
   int pixels = 0;  ///< frames whose pixels probe measures
   bool json = false;
+
+  SynthJob synth;
 
   std::string topic;  ///< what help is asked about; empty: the program
   bool all = false, man = false;
