@@ -1,5 +1,6 @@
 #include "diagnose/ghost.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -17,9 +18,11 @@ Ghost ghost_of(const ColorPair& now, const Plane<glm::vec4>& stale, const Plane<
     for (int x = window.x0; x < window.x1; ++x) {
       if (now.bad.at(x, y) || (!stale_bad.empty() && stale_bad.at(x, y))) continue;
       for (int c = 0; c < 3; ++c) {
-        const double r = double(now.a.at(x, y)[c]), d = double(stale.at(x, y)[c]) - r;
-        sums.product += (double(now.b.at(x, y)[c]) - r) * d;
-        sums.squares += d * d;
+        const double r = double(now.a.at(x, y)[c]), h = double(stale.at(x, y)[c]), d = h - r;
+        // Without it a few highlights would decide. It does not look at the test, so shares stay exact.
+        const double weight = 1 / std::pow(1 + std::max(std::abs(r), std::abs(h)), 2);
+        sums.product += weight * (double(now.b.at(x, y)[c]) - r) * d;
+        sums.squares += weight * d * d;
       }
     }
     return sums;

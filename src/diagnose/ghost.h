@@ -9,7 +9,7 @@
 namespace varve {
 
 /// Least squares share of a stale picture h in the test o against the reference r:
-/// sum (o - r)(h - r) / sum (h - r)^2 over R, G, B. 0: none of it; 1: nothing else.
+/// sum w (o - r)(h - r) / sum w (h - r)^2 over R, G, B, w = 1 / (1 + max(|r|, |h|))^2. 0: none of it; 1: nothing else.
 struct Ghost {
   double product = 0, squares = 0;
   Ghost& operator+=(const Ghost& more) {

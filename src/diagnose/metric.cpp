@@ -6,7 +6,7 @@ namespace varve {
 namespace {
 
 constexpr auto kDown = Better::down, kUp = Better::up;
-constexpr auto kFrame = MetricScope::frame, kSequence = MetricScope::sequence;
+constexpr auto kFrame = MetricScope::frame, kPair = MetricScope::pair, kSequence = MetricScope::sequence;
 
 constexpr Metric kMetrics[] = {
     {MetricId::missing, "missing", "frames", kDown, kSequence, false,
@@ -37,13 +37,13 @@ constexpr Metric kMetrics[] = {
      "Part of the mean square error that stays over time: blur, ghosts, offsets."},
     {MetricId::flicker, "flicker", "", kDown, kSequence, false,
      "The rest of the mean square error: what changes from frame to frame at a fixed pixel."},
-    {MetricId::warped, "warped", "", kDown, kFrame, false,
+    {MetricId::warped, "warped", "", kDown, kPair, false,
      "Mean square change of the error along the motion since the frame before; needs motion vectors."},
     {MetricId::spectrum, "spectrum", "share", kDown, kSequence, false,
      "Share of the error's power over time at 1/8 cycle per frame and above; needs 9 frames in a row."},
-    {MetricId::tflip, "tflip", "", kDown, kFrame, true,
+    {MetricId::tflip, "tflip", "", kDown, kPair, true,
      "Mean difference between FLIP of B against its frame before and FLIP of A against its frame before."},
-    {MetricId::ghost, "ghost", "share", kDown, kFrame, false,
+    {MetricId::ghost, "ghost", "share", kDown, kPair, false,
      "Share of A's frame before, unmoved, that shows in B: 0 none, 1 nothing else."},
     {MetricId::lag, "lag", "frames", kDown, kSequence, false, "Mean age of what B shows after a cut of --cuts."},
     {MetricId::half_life, "half-life", "frames", kDown, kSequence, false,

@@ -39,8 +39,8 @@ enum class MetricId {
 inline constexpr std::size_t kMetricCount = std::size_t(MetricId::edge_blur) + 1;
 
 enum class Better { down, up };
-/// What a figure belongs to: each frame and the sequence, or the sequence alone.
-enum class MetricScope { frame, sequence };
+/// What a figure belongs to: each frame; a frame and the one before it; the whole sequence.
+enum class MetricScope { frame, pair, sequence };
 
 struct Metric {
   MetricId id;
