@@ -147,6 +147,8 @@ std::string command_page(const Command& command) {
   }
   if (command.bit == kResolve)
     out += topic_sections({"aovs", "rejection", "conventions", "presets", "exit-codes"}) + files_section();
+  else if (command.bit == kCompare)
+    out += topic_sections({"metrics", "conventions", "exit-codes"});
   else
     out += topic_sections({"conventions", "exit-codes"});
   return out + examples_section(command.examples) + see_also(page);
