@@ -150,10 +150,11 @@ void Reader::apply_positionals() {
     refuse(std::string(command_.name) + " needs " + name + ": " +
            (positionals_.empty() ? command_.read_positional : command_.read_second).allowed);
   if (positionals_.size() > most)
-    refuse(std::string(command_.name) + " takes " + (most == 0 ? "no argument" : (two ? "" : "one ") + name) + ", and " +
-           quoted(positionals_[most]) + " is one too many" +
+    refuse(std::string(command_.name) + " takes " + (most == 0 ? "no argument" : (two ? "" : "one ") + name) +
+           ", and " + quoted(positionals_[most]) + " is one too many" +
            (optional || most == 0 ? "" : "; a sequence is written as one pattern, such as shot.####.exr"));
-  if (!positionals_.empty()) set(command_.read_positional, two ? name.substr(0, name.find(' ')) : name, positionals_[0]);
+  if (!positionals_.empty())
+    set(command_.read_positional, two ? name.substr(0, name.find(' ')) : name, positionals_[0]);
   if (positionals_.size() > 1) set(command_.read_second, name.substr(name.find(' ') + 1), positionals_[1]);
 }
 

@@ -4,6 +4,7 @@
 #include "diagnose/metric.h"
 #include "help.h"
 #include "plan/preset.h"
+#include "synth/scenes.h"
 
 namespace varve::cli {
 namespace {
@@ -98,6 +99,13 @@ Topic metrics_topic() {
   return topic;
 }
 
+Topic scenes_topic() {
+  Topic topic{
+      "scenes", "SCENES", "What `varve synth` renders. Each scene provokes one thing that breaks a resolver.", {}};
+  for (const synth::SceneRow& row : synth::scene_table()) topic.rows.emplace_back(row.name, std::string(row.provokes));
+  return topic;
+}
+
 Topic exit_topic() {
   Topic topic{"exit-codes", "EXIT STATUS", "", {}};
   for (const ExitMeaning& row : kExitMeanings)
@@ -108,8 +116,8 @@ Topic exit_topic() {
 }  // namespace
 
 std::vector<Topic> topics() {
-  return {presets_topic(),     aovs_topic(),    rejection_topic(),
-          conventions_topic(), metrics_topic(), exit_topic()};
+  return {presets_topic(), aovs_topic(),   rejection_topic(), conventions_topic(),
+          metrics_topic(), scenes_topic(), exit_topic()};
 }
 
 std::string topic_names() {
