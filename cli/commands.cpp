@@ -21,6 +21,17 @@ Value<Settings> input_pattern() {
           {}};
 }
 
+template <class At>
+Value<Settings> side_pattern(At at, const char* allowed) {
+  return {[at](Settings& s, std::string_view text) {
+            at(s) = SequencePattern::parse(text);
+            return true;
+          },
+          nullptr,
+          allowed,
+          {}};
+}
+
 Value<Settings> scene_name() {
   Value<Settings> value{[](Settings& s, std::string_view text) {
                           s.synth.scene = text;
@@ -76,6 +87,26 @@ std::vector<Command> command_table() {
        true,
        {{"varve probe shot.####.exr", "Headers only; quick."},
         {"varve probe shot.####.exr --pixels 3 --json", "With the ranges of three frames, for a script."}}},
+      {"compare",
+       kCompare,
+       "A B",
+       "measure how one sequence differs from another",
+       "Compares what both sequences have, A being the reference: first frames, windows and channels, then what is not "
+       "finite, then figures for each frame and over time. Colors are found by their names, which need not be the "
+       "same; "
+       "a NaN against a number is a difference.\n"
+       "Without limits any difference gives exit code 1. With --fail it takes a figure beyond its limit, a frame or "
+       "channel that one side lacks, or a value that is not finite. Figures are explained by `varve help metrics`.",
+       side_pattern(
+           [](auto& s) -> auto& { return s.compare.a; }, "the reference, such as ref.####.exr"),
+       run_compare,
+       true,
+       {{"varve compare old.####.exr new.####.exr", "Are they the same, value by value?"},
+        {"varve compare ref.####.exr out.####.exr --fail psnr=30 --fail flip=0.1 --html report.html",
+         "Good enough? With a page that shows where not."},
+        {"varve compare ref.####.exr out.####.exr --metrics fast --json -", "Figures for a script, quickly."}},
+       side_pattern(
+           [](auto& s) -> auto& { return s.compare.b; }, "the sequence to judge, such as out.####.exr")},
       {"synth",
        kSynth,
        "SCENE",

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "compare_sequence.h"
 #include "resolve_sequence.h"
 #include "synth_sequence.h"
 
@@ -23,6 +24,9 @@ struct Settings {
   int pixels = 0;  ///< frames whose pixels probe measures
   bool json = false;
 
+  CompareJob compare;          ///< shares frames, cuts, roles and threads with `job`
+  RoleRequest only_a, only_b;  ///< layers and mapped channels of one side
+  std::string json_file, csv_file, html_file;
   SynthJob synth;
 
   std::string topic;  ///< what help is asked about; empty: the program

@@ -51,6 +51,8 @@ Plane<glm::vec4> read_color(const Subject& subject, const FileSet& files, const 
   return color;
 }
 
+}  // namespace
+
 Plane<glm::vec2> read_vectors(const VectorChannels& channels, const MotionEncoding& encoding, const FileSet& files,
                               const Window& window, const Window& display_window, double max_length,
                               std::size_t& unusable, Workers& workers) {
@@ -59,8 +61,6 @@ Plane<glm::vec2> read_vectors(const VectorChannels& channels, const MotionEncodi
   const Plane<float> y = read_plane(pixels_of(files, channels[1]), window, outside, workers);
   return decode_motion(x, y, encoding, display_window, max_length, workers, unusable);
 }
-
-}  // namespace
 
 Present read_present(const Subject& subject, const FileSet& pixels, const Window& window, const Window& display_window,
                      const ReadOptions& options, const ColorConversion* into_working_space, ForwardMemory& memory,

@@ -34,4 +34,9 @@ Present read_present(const Subject& subject, const FileSet& pixels, const Window
                      const ReadOptions& options, const ColorConversion* into_working_space, ForwardMemory& memory,
                      std::size_t& vectors_bad, Workers& workers);
 
+/// Stored vectors over `window` in pixels, y down; NaN where their own window has none, and where they cannot be used.
+Plane<glm::vec2> read_vectors(const VectorChannels& channels, const MotionEncoding& encoding, const FileSet& files,
+                              const Window& window, const Window& display_window, double max_length,
+                              std::size_t& unusable, Workers& workers);
+
 }  // namespace varve
