@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "help.h"
 #include "option.h"
+#include "synth/scenes.h"
 
 namespace varve::cli {
 namespace {
@@ -18,6 +19,30 @@ Value<Settings> input_pattern() {
           nullptr,
           "the files to read, such as shot.####.exr",
           {}};
+}
+
+template <class At>
+Value<Settings> side_pattern(At at, const char* allowed) {
+  return {[at](Settings& s, std::string_view text) {
+            at(s) = SequencePattern::parse(text);
+            return true;
+          },
+          nullptr,
+          allowed,
+          {}};
+}
+
+Value<Settings> scene_name() {
+  Value<Settings> value{[](Settings& s, std::string_view text) {
+                          s.synth.scene = text;
+                          return !text.empty();
+                        },
+                        nullptr,
+                        "a scene; `varve help scenes` lists them",
+                        {}};
+  for (const synth::SceneRow& row : synth::scene_table())
+    value.choices.push_back({std::string(row.name), std::string(row.provokes)});
+  return value;
 }
 
 Value<Settings> help_topic() {
@@ -62,6 +87,45 @@ std::vector<Command> command_table() {
        true,
        {{"varve probe shot.####.exr", "Headers only; quick."},
         {"varve probe shot.####.exr --pixels 3 --json", "With the ranges of three frames, for a script."}}},
+      {"compare",
+       kCompare,
+       "A B",
+       "measure how one sequence differs from another",
+       "Compares what both sequences have, A being the reference: first frames, windows and channels, then what is not "
+       "finite, then figures for each frame and over time. Colors are found by their names, which need not be the "
+       "same; "
+       "a NaN against a number is a difference.\n"
+       "Without limits any difference gives exit code 1. With --fail it takes a figure beyond its limit, a frame or "
+       "channel that one side lacks, or a value that is not finite. Figures are explained by `varve help metrics`.",
+       side_pattern(
+           [](auto& s) -> auto& { return s.compare.a; }, "the reference, such as ref.####.exr"),
+       run_compare,
+       true,
+       {{"varve compare old.####.exr new.####.exr", "Are they the same, value by value?"},
+        {"varve compare ref.####.exr out.####.exr --fail psnr=30 --fail flip=0.1 --html report.html",
+         "Good enough? With a page that shows where not."},
+        {"varve compare ref.####.exr out.####.exr --metrics fast --json -", "Figures for a script, quickly."}},
+       side_pattern(
+           [](auto& s) -> auto& { return s.compare.b; }, "the sequence to judge, such as out.####.exr")},
+      {"synth",
+       kSynth,
+       "SCENE",
+       "write a sequence whose truth is known",
+       "Renders an analytic scene as a jittered sequence DIR/SCENE.####.exr with color, alpha, depth Z, motion "
+       "(velocity "
+       "to the previous frame and forward to the next, pixels, y down, without the jitter), ids, jitter, and camera "
+       "matrices, and DIR/jitter.csv. Depth, motion, and ids are exact where a scene does not say otherwise. `varve "
+       "resolve` and `varve probe` read the result as it is: the attribute varve:motion names the convention.\n"
+       "On demand the truth of the same frames goes to DIR/truth, and renders with n x n stratified samples, as "
+       "yardsticks, to DIR/ssN.\n"
+       "The same command writes the same bytes, with any number of threads.",
+       scene_name(),
+       run_synth,
+       true,
+       {{"varve synth quality-all -o all --truth box --yardsticks 2,4", "48 frames, their truth, and two yardsticks."},
+        {"varve synth panes -o panes --layers", "Each layer beside the composite."},
+        {"varve synth fence -o fence --samples 4 --size 640x360",
+         "Four parts with jitters of their own in each file."}}},
       {"help", kHelp, "[TOPIC]", "explain a command or a topic",
        "TOPIC is a command, or one of " + topic_names() + ". Without it the program itself is explained.", help_topic(),
        run_help},

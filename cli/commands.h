@@ -13,6 +13,8 @@ int run(std::span<const std::string> arguments);
 
 int run_resolve(Settings& settings);
 int run_probe(Settings& settings);
+int run_compare(Settings& settings);
+int run_synth(Settings& settings);
 int run_help(Settings& settings);
 int run_version(Settings& settings);
 

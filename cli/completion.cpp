@@ -45,7 +45,11 @@ std::string bash_completion() {
             "\" -- \"$cur\")\n";
     if (command.bit == kHelp)
       arms += "      else mapfile -t COMPREPLY < <(compgen -W \"" + help_words + "\" -- \"$cur\")\n";
-    else if (!command.positional.empty())
+    else if (!command.read_positional.choices.empty()) {
+      std::string words;
+      for (const Choice& choice : command.read_positional.choices) words += (words.empty() ? "" : " ") + choice.word;
+      arms += "      else mapfile -t COMPREPLY < <(compgen -W \"" + words + "\" -- \"$cur\")\n";
+    } else if (!command.positional.empty())
       arms += "      else mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n";
     arms += "      fi ;;\n";
   }

@@ -52,7 +52,10 @@ std::string synopsis(const Command& command) {
   const bool has_options = !options_of(command.bit).empty();
   return "varve " + std::string(command.name) +
          (command.positional.empty() ? "" : " " + std::string(command.positional)) +
-         (command.bit == kResolve ? " -o OUT" : "") + (has_options ? " [OPTION]..." : "");
+         (command.bit == kResolve ? " -o OUT"
+          : command.bit == kSynth ? " -o DIR"
+                                  : "") +
+         (has_options ? " [OPTION]..." : "");
 }
 
 std::string commands_list() {

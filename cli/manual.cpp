@@ -133,7 +133,10 @@ std::string command_page(const Command& command) {
   const std::vector<Option> options = options_of(command.bit);
   std::string out = title_line(page, command.summary);
   out += section("Synopsis") + bold("varve " + std::string(command.name)) + " " + italic(command.positional) + " " +
-         (command.bit == kResolve ? bold("-o") + " " + italic("OUT") + " " : "") + "[" + italic("OPTION") + "]...\n";
+         (command.bit == kResolve ? bold("-o") + " " + italic("OUT") + " "
+          : command.bit == kSynth ? bold("-o") + " " + italic("DIR") + " "
+                                  : "") +
+         "[" + italic("OPTION") + "]...\n";
   out += section("Description") + paragraphs(command.description);
   out += section("Options") +
          escaped(
@@ -147,6 +150,10 @@ std::string command_page(const Command& command) {
   }
   if (command.bit == kResolve)
     out += topic_sections({"aovs", "rejection", "conventions", "presets", "exit-codes"}) + files_section();
+  else if (command.bit == kCompare)
+    out += topic_sections({"metrics", "conventions", "exit-codes"});
+  else if (command.bit == kSynth)
+    out += topic_sections({"scenes", "exit-codes"});
   else
     out += topic_sections({"conventions", "exit-codes"});
   return out + examples_section(command.examples) + see_also(page);

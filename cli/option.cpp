@@ -144,14 +144,18 @@ void Reader::set(const Value<Settings>& value, const std::string& name, const st
 
 void Reader::apply_positionals() {
   const std::string name(command_.positional);
-  const bool optional = name.starts_with('[');
-  if (positionals_.empty() && !optional && !name.empty())
-    refuse(std::string(command_.name) + " needs " + name + ": " + command_.read_positional.allowed);
-  if (positionals_.size() > (name.empty() ? 0u : 1u))
-    refuse(std::string(command_.name) + " takes " + (name.empty() ? "no argument" : "one " + name) + ", and " +
-           quoted(positionals_[name.empty() ? 0 : 1]) + " is one too many" +
-           (optional || name.empty() ? "" : "; a sequence is written as one pattern, such as shot.####.exr"));
-  if (!positionals_.empty()) set(command_.read_positional, name, positionals_[0]);
+  const bool optional = name.starts_with('['), two = command_.read_second.read != nullptr;
+  const std::size_t most = name.empty() ? 0 : two ? 2 : 1;
+  if (positionals_.size() < most && !optional)
+    refuse(std::string(command_.name) + " needs " + name + ": " +
+           (positionals_.empty() ? command_.read_positional : command_.read_second).allowed);
+  if (positionals_.size() > most)
+    refuse(std::string(command_.name) + " takes " + (most == 0 ? "no argument" : (two ? "" : "one ") + name) +
+           ", and " + quoted(positionals_[most]) + " is one too many" +
+           (optional || most == 0 ? "" : "; a sequence is written as one pattern, such as shot.####.exr"));
+  if (!positionals_.empty())
+    set(command_.read_positional, two ? name.substr(0, name.find(' ')) : name, positionals_[0]);
+  if (positionals_.size() > 1) set(command_.read_second, name.substr(name.find(' ') + 1), positionals_[1]);
 }
 
 }  // namespace

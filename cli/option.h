@@ -13,7 +13,7 @@
 namespace varve::cli {
 
 /// Commands as bits, so that an option can belong to several.
-enum CommandBit : unsigned { kResolve = 1, kProbe = 2, kHelp = 4, kVersion = 8 };
+enum CommandBit : unsigned { kResolve = 1, kProbe = 2, kHelp = 4, kVersion = 8, kCompare = 16, kSynth = 32 };
 
 /// What completion offers for a value that is not one of a few words.
 enum class Completes { nothing, files, folders };
@@ -46,13 +46,14 @@ struct Example {
 struct Command {
   std::string_view name;
   unsigned bit;
-  std::string_view positional;  ///< its one positional argument; in brackets: may be left out; empty: none
+  std::string_view positional;  ///< its positional argument; in brackets: may be left out; empty: none; "A B": two
   std::string_view summary;     ///< one line, no full stop
   std::string description;      ///< paragraphs with line feeds between
   Value<Settings> read_positional;
   int (*run)(Settings&);  ///< exit code
   bool has_manual = false;
   std::vector<Example> examples = {};
+  Value<Settings> read_second = {};  ///< the second positional argument, if there are two
 };
 
 /// In the order of help.

@@ -70,6 +70,33 @@ Value<Settings> convention_value() {
   return value;
 }
 
+Value<Settings> size_value() {
+  return {[](Settings& s, std::string_view text) {
+            const std::size_t x = std::min(text.find('x'), text.size());
+            const auto width = parse_number<int>(text.substr(0, x));
+            const auto height = parse_number<int>(text.substr(std::min(x + 1, text.size())));
+            constexpr int kLongest = 16384;
+            if (!width || !height || *width < 1 || *height < 1 || *width > kLongest || *height > kLongest) return false;
+            s.synth.width = *width;
+            s.synth.height = *height;
+            return true;
+          },
+          nullptr,
+          "width x height in pixels, 1 to 16384 each, such as 320x180",
+          {}};
+}
+
+Value<Settings> yardsticks_value() {
+  return list(
+      [](Settings& s, const std::string& text) {
+        const auto n = parse_number<int>(text);
+        if (!n || *n < 1 || *n > 64) return false;
+        if (std::ranges::find(s.synth.yardsticks, *n) == s.synth.yardsticks.end()) s.synth.yardsticks.push_back(*n);
+        return true;
+      },
+      "a list with commas of numbers from 1 to 64, such as 2,3,4,6");
+}
+
 Value<Settings> knob_value(const Knob& knob) {
   return inside<Settings>(
       knob.value, [](auto& s) -> auto& { return s.job.parameters; });

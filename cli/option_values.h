@@ -93,6 +93,10 @@ Value<Settings> aovs_value();
 Value<Settings> convention_value();
 /// Sets all parameters.
 Value<Settings> preset_value();
+/// 320x180.
+Value<Settings> size_value();
+/// Numbers of --yardsticks.
+Value<Settings> yardsticks_value();
 /// A parameter of the resolve.
 Value<Settings> knob_value(const Knob& knob);
 

@@ -1,10 +1,12 @@
 // THE table of options. Names, ranges and texts of the parameters come from knobs().
+#include "compare_options.h"
 #include "option_values.h"
+#include "synth_options.h"
 
 namespace varve::cli {
 namespace {
 
-constexpr unsigned kBoth = kResolve | kProbe;
+constexpr unsigned kBoth = kResolve | kProbe, kEach = kBoth | kCompare;
 
 constexpr Word<bool> kKeeps[] = {
     {"all", true, "other channels and parts pass through, bit for bit"},
@@ -54,13 +56,13 @@ void add_file_options(std::vector<Option>& rows) {
   add({"output", 'o', "PATTERN", kResolve, kBasic, group, "Files to write, never the input itself. Required.",
        pattern([](auto& s) -> auto& { return s.job.output; })})
       .completes = Completes::files;
-  add({"frames", 'f', "LIST", kBoth, kBasic, group,
-       "Frames to work on; without it all files that match IN. Negative frames are written as in -10--5.",
+  add({"frames", 'f', "LIST", kEach, kBasic, group,
+       "Frames to work on; without it all files that match. Negative frames are written as in -10--5.",
        frames([](auto& s) -> auto& { return s.job.frames; })});
   add({"preroll", 0, "FRAMES", kResolve, kAdvanced, group,
        "Frames read before the first one written, so that a chunk of a shot starts with history. 0 starts without.",
        number([](auto& s) -> auto& { return s.job.preroll; }, {0, 100000})});
-  add({"cuts", 0, "LIST", kResolve, kBasic, group, "First frames of new shots; history does not cross them.",
+  add({"cuts", 0, "LIST", kResolve | kCompare, kBasic, group, "First frames of new shots; history does not cross them.",
        frames([](auto& s) -> auto& { return s.job.cuts; })});
   add({"resume", 0, "", kResolve, kBasic, group,
        "Skip frames whose output is complete and was made with the same parameters from the same frames. Frames that "
@@ -81,7 +83,7 @@ void add_file_options(std::vector<Option>& rows) {
 void add_channel_options(std::vector<Option>& rows) {
   const std::string group = "Channels";
   const auto add = [&rows](Option option) -> Option& { return rows.emplace_back(std::move(option)); };
-  add({"layer", 'l', "LIST", kBoth, kBasic, group, "Layers to resolve; without it the main layer of each view.",
+  add({"layer", 'l', "LIST", kEach, kBasic, group, "Layers to work on; without it the main layer of each view.",
        list(
            [](Settings& s, const std::string& layer) {
              s.job.roles.layers.push_back(layer);
@@ -97,7 +99,8 @@ void add_channel_options(std::vector<Option>& rows) {
   add({"depth-file", 0, "PATTERN", kBoth, kAdvanced, group, "Files with the depth, where it is not in IN.",
        pattern([](auto& s) -> auto& { return s.depth_files; })})
       .completes = Completes::files;
-  add({"motion-file", 0, "PATTERN", kBoth, kAdvanced, group, "Files with the motion vectors, where they are not in IN.",
+  add({"motion-file", 0, "PATTERN", kEach, kAdvanced, group,
+       "Files with the motion vectors, where they are not beside the color.",
        pattern([](auto& s) -> auto& { return s.motion_files; })})
       .completes = Completes::files;
   add({"jitter", 0, "SOURCE", kBoth, kAdvanced, group,
@@ -112,7 +115,7 @@ void add_channel_options(std::vector<Option>& rows) {
 void add_motion_options(std::vector<Option>& rows) {
   const std::string group = "Motion and depth";
   const auto add = [&rows, group](const char* name, const char* metavar, const char* help, Value<Settings> value) {
-    rows.push_back({name, 0, metavar, kBoth, kExpert, group, help, std::move(value)});
+    rows.push_back({name, 0, metavar, kEach, kExpert, group, help, std::move(value)});
   };
   add("convention", "NAME", "How the renderer wrote its motion vectors; see `varve help conventions`.",
       convention_value());
@@ -228,13 +231,13 @@ void add_run_options(std::vector<Option>& rows) {
   add({"json", 0, "", kProbe, kBasic, group, "Print JSON.", flag([](auto& s) -> auto& { return s.json; })});
   add({"dry-run", 'n', "", kResolve, kBasic, group, "Check the input, print the plan and write nothing.",
        flag([](auto& s) -> auto& { return s.dry_run; })});
-  add({"threads", 'j', "COUNT", kBoth, kAdvanced, group,
+  add({"threads", 'j', "COUNT", kEach | kSynth, kAdvanced, group,
        "Threads to use; 0 takes every processor. The output is the same for any count.",
        number([](auto& s) -> auto& { return s.job.threads; }, {0, 1024})});
   add({"progress", 0, "STYLE", kResolve, kBasic, group, "How progress is told, on standard error.",
        word(
            [](auto& s) -> auto& { return s.progress; }, kProgressStyles)});
-  add({"quiet", 'q', "", kResolve, kBasic, group, "No progress, no warnings, no summary.",
+  add({"quiet", 'q', "", kResolve | kSynth, kBasic, group, "No progress, no warnings, no summary.",
        flag([](auto& s) -> auto& { return s.quiet; })});
   add({"verbose", 'v', "", kResolve, kBasic, group, "Print the plan before the work starts.",
        flag([](auto& s) -> auto& { return s.verbose; })});
@@ -257,11 +260,13 @@ void add_help_options(std::vector<Option>& rows) {
 std::vector<Option> option_table() {
   std::vector<Option> rows;
   add_file_options(rows);
+  add_synth_options(rows);
   add_channel_options(rows);
   add_parameter_options(rows);
   add_motion_options(rows);
   add_diagnostic_options(rows);
   add_color_options(rows);
+  add_compare_options(rows);
   add_run_options(rows);
   add_help_options(rows);
   return rows;

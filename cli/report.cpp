@@ -14,7 +14,10 @@ void write_report(const std::string& path, std::span<const std::string> rows) {
   std::string text = std::string("{\"version\":\"") + version() + "\",\"frames\":[";
   for (std::size_t i = 0; i < rows.size(); ++i) text += (i > 0 ? ",\n" : "\n") + rows[i];
   text += "\n]}\n";
+  write_file(path, text);
+}
 
+void write_file(const std::string& path, const std::string& text) {
   const std::string temporary = path + ".tmp" + std::to_string(getpid());
   std::FILE* file = std::fopen(temporary.c_str(), "wb");
   bool good = file && std::fwrite(text.data(), 1, text.size(), file) == text.size();

@@ -10,4 +10,7 @@ namespace varve::cli {
 /// Throws Failure(output) with path and reason.
 void write_report(const std::string& path, std::span<const std::string> rows);
 
+/// Writes a whole text; the file appears under its name when complete. Throws Failure(output).
+void write_file(const std::string& path, const std::string& text);
+
 }  // namespace varve::cli

@@ -4,7 +4,9 @@
 #include <optional>
 #include <string>
 
+#include "compare_sequence.h"
 #include "resolve_sequence.h"
+#include "synth_sequence.h"
 
 namespace varve::cli {
 
@@ -20,6 +22,11 @@ struct Settings {
 
   int pixels = 0;  ///< frames whose pixels probe measures
   bool json = false;
+
+  CompareJob compare;          ///< shares frames, cuts, roles and threads with `job`
+  RoleRequest only_a, only_b;  ///< layers and mapped channels of one side
+  std::string json_file, csv_file, html_file;
+  SynthJob synth;
 
   std::string topic;  ///< what help is asked about; empty: the program
   bool all = false, man = false;

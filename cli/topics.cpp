@@ -1,8 +1,10 @@
 // The tables behind `varve help TOPIC` and the manual sections.
 #include "base/error.h"
 #include "diagnose/aov.h"
+#include "diagnose/metric.h"
 #include "help.h"
 #include "plan/preset.h"
+#include "synth/scenes.h"
 
 namespace varve::cli {
 namespace {
@@ -13,6 +15,7 @@ struct ExitMeaning {
 };
 constexpr ExitMeaning kExitMeanings[] = {
     {ExitCode::done, "Done."},
+    {ExitCode::differences, "varve compare found differences, or a limit that does not hold."},
     {ExitCode::usage, "The command line is wrong: an unknown option, a bad value, something missing."},
     {ExitCode::input, "Input is missing, unreadable or damaged."},
     {ExitCode::inconsistent, "Inputs do not fit together, or what is asked for needs what is not there."},
@@ -82,6 +85,27 @@ Topic conventions_topic() {
   return topic;
 }
 
+Topic metrics_topic() {
+  Topic topic{"metrics",
+              "METRICS",
+              "Figures of varve compare, for --metrics, --fail and --warn. A is the reference, b - a the difference.",
+              {}};
+  for (const Metric& metric : metrics()) {
+    std::string text(metric.meaning);
+    if (!metric.unit.empty()) text += " Unit: " + std::string(metric.unit) + ".";
+    text += metric.better == Better::up ? " More is better." : " Less is better.";
+    topic.rows.emplace_back(metric.name, text);
+  }
+  return topic;
+}
+
+Topic scenes_topic() {
+  Topic topic{
+      "scenes", "SCENES", "What `varve synth` renders. Each scene provokes one thing that breaks a resolver.", {}};
+  for (const synth::SceneRow& row : synth::scene_table()) topic.rows.emplace_back(row.name, std::string(row.provokes));
+  return topic;
+}
+
 Topic exit_topic() {
   Topic topic{"exit-codes", "EXIT STATUS", "", {}};
   for (const ExitMeaning& row : kExitMeanings)
@@ -92,7 +116,8 @@ Topic exit_topic() {
 }  // namespace
 
 std::vector<Topic> topics() {
-  return {presets_topic(), aovs_topic(), rejection_topic(), conventions_topic(), exit_topic()};
+  return {presets_topic(), aovs_topic(),   rejection_topic(), conventions_topic(),
+          metrics_topic(), scenes_topic(), exit_topic()};
 }
 
 std::string topic_names() {

@@ -5,15 +5,20 @@ namespace {
 
 constexpr Aov kAovs[] = {
     {"count", "", PixelType::float32, "samples", "0 and up", "viridis", 0, 20,
-     "Effective sample count: one over the sum of squared weights of all samples in the pixel. 0 where nothing valid was seen."},
+     "Effective sample count: one over the sum of squared weights of all samples in the pixel. 0 where nothing valid "
+     "was seen."},
     {"clip", "", PixelType::float32, "relative", "0 to 2", "inferno", 0, 1,
-     "Clip distance: how far rectification moved the history, in RGB, over the longer of what it was and what it became."},
+     "Clip distance: how far rectification moved the history, in RGB, over the longer of what it was and what it "
+     "became."},
     {"reject", "", PixelType::uint32, "bits", "0 to 127", "turbo", 0, 127,
      "Why history was not used: a sum of the bits listed under REJECTION BITS. 0 where history was used."},
     {"motion", "xy", PixelType::float32, "pixels, y down", "any", "blue-red", -16, 16,
      "Backward motion used, after dilation: previous position minus this position."},
     {"weight", "", PixelType::float32, "fraction", "0 to 1", "viridis", 0, 1,
      "Weight of the history in the output pixel; the present has the rest."},
+    {"prediction", "rgb", PixelType::float32, "scene-linear", "any", "viridis", 0, 1,
+     "What the frames before say this pixel is: the history rectified without the pixel itself, nothing of the present "
+     "blended in. 0 where there is no history. Its difference to the input ranks settings where no reference exists."},
     {"repaired", "", PixelType::float32, "flag", "0 or 1", "inferno", 0, 1,
      "1 where the input color was not finite and something else stands in the output."},
 };

@@ -83,6 +83,16 @@ FoundVectors vectors_of_row(const ChannelIndex& index, const ChannelGroup& color
   return {best(row.backward_x, row.backward_y), best(row.forward_x, row.forward_y)};
 }
 
+// What the file itself says: the attribute varve:motion holds the name of a convention.
+const MotionConvention* told_by_attribute(const ChannelIndex& index, const ChannelGroup& color) {
+  const FileHeader& file = index.files[std::size_t(color.file)];
+  const Attribute* attribute = file.parts[std::size_t(color.part)].attribute("varve:motion");
+  if (!attribute) return nullptr;
+  if (const MotionConvention* row = find_motion_convention(attribute->text)) return row;
+  throw Failure(ExitCode::inconsistent, file.path + ": the attribute varve:motion names the convention \"" +
+                                            attribute->text + "\", which is unknown: " + std::string(kRemedy));
+}
+
 // Conventions that names alone tell: all four channels of a Vector layer, or u and v under forward or backward.
 std::pair<const MotionConvention*, FoundVectors> told_by_names(const ChannelIndex& index, const ChannelGroup& color,
                                                                bool main_color) {
@@ -183,16 +193,15 @@ bool use_mapped(const ChannelIndex& index, const ChannelGroup& color, const Role
   return true;
 }
 
-void note_found(const ChannelIndex& index, const MotionConvention& row, const FoundVectors& found, bool by_name,
-                Subject& subject) {
+void note_found(const ChannelIndex& index, const MotionConvention& row, const FoundVectors& found,
+                const std::string& evidence, Subject& subject) {
   for (const bool backward : {true, false}) {
     const std::optional<RoleChoice>& choice = backward ? found.backward : found.forward;
     if (!choice) continue;
     const RoleCandidate& c = choice->candidate;
     (backward ? subject.backward : subject.forward) = VectorChannels{c.x, c.y};
     std::string note = "motion to the " + std::string(backward ? "previous" : "next") + " frame: " + index.name(c.x) +
-                       ", " + index.name(c.y) + ", convention " + std::string(row.name) +
-                       (by_name ? ", told by the channel names" : ", as given");
+                       ", " + index.name(c.y) + ", convention " + std::string(row.name) + ", " + evidence;
     if (choice->foreign) note += "; they are the only vectors there are, though not of this layer";
     subject.notes.push_back(note);
   }
@@ -216,13 +225,19 @@ void find_motion(const ChannelIndex& index, const ChannelGroup& color, bool main
     return;
   }
   FoundVectors found;
+  std::string evidence = "as given";
   if (row)
     found = vectors_of_row(index, color, main_color, *row);
-  else
+  else if (row = told_by_attribute(index, color); row) {
+    found = vectors_of_row(index, color, main_color, *row);
+    evidence = "told by the attribute varve:motion";
+  } else {
     std::tie(row, found) = told_by_names(index, color, main_color);
+    evidence = "told by the channel names";
+  }
   if (row && found) {
     set_convention(*row, subject);
-    note_found(index, *row, found, request.convention == "auto", subject);
+    note_found(index, *row, found, evidence, subject);
     apply_overrides(request, subject);
     return;
   }

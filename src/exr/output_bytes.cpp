@@ -105,6 +105,9 @@ void check_writable(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode))
     throw Failure(ExitCode::output, "'" + path + "' is a folder; give the name of a file");
+  // A name is taken by renaming: that would replace the device or pipe itself.
+  if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
+    throw Failure(ExitCode::output, "'" + path + "' is a device or a pipe; give the name of a file");
   if (std::filesystem::path(path).filename().empty())
     throw Failure(ExitCode::output, "'" + path + "' is no file name; give the name of a file");
   if (::stat(folder.c_str(), &status) != 0)

@@ -45,13 +45,14 @@ constexpr MotionConvention kConventions[] = {
      "velocity,motion",
      "x",
      "y",
-     "",
-     "",
+     "forward.x",
+     "forward.y",
      {0, 1, 1, 1, 1, pixel, previous},
-     kNone,
+     {0, 1, 1, 1, 1, pixel, next},
      kFar,
      Evidence::measured,
-     "This program's own: pixels, y down, previous position minus this one, without the jitter."},
+     "This program's own: pixels, y down, previous position minus this one, without the jitter; layer forward, next "
+     "position minus this one. Files of `varve synth` say so in the attribute varve:motion."},
     {"vray", "velocity", "", "", "R", "G", kNone, centered_up(1, next), kFar, Evidence::unverified,
      "Velocity element, 0.5 is rest, current to next (documented); the scale is twice the maximum velocity (1 by "
      "default) and the y axis is not verified. The element's clamp must be off."},

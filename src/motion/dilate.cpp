@@ -30,7 +30,8 @@ Plane<float> claims(const Plane<glm::vec2>& motion, const Plane<float>& depth, D
     for (int x = 0; x < w.width(); ++x) {
       const float length2 = v[x].x * v[x].x + v[x].y * v[x].y;
       // Background is as far as can be, but its vector counts.
-      const float near = dilation == Dilation::nearest ? std::max(-depth.row(y)[x], -std::numeric_limits<float>::max()) : length2;
+      const float near =
+          dilation == Dilation::nearest ? std::max(-depth.row(y)[x], -std::numeric_limits<float>::max()) : length2;
       row[x] = length2 >= 0 ? near : kNothing;
     }
   });

@@ -19,10 +19,14 @@ void fetch_history(const AccumulateView& v, int y, const RowScratch& s) {
   }
   for (int x = 0; x < v.width; ++x) s.reject[x] = 0;
   switch (v.filter) {
-    case HistoryFilter::bilinear: return fetch_row<HistoryFilter::bilinear>(v, y, s);
-    case HistoryFilter::catmull_rom: return fetch_row<HistoryFilter::catmull_rom>(v, y, s);
-    case HistoryFilter::catmull_rom9: return fetch_row<HistoryFilter::catmull_rom9>(v, y, s);
-    case HistoryFilter::catmull_rom5: return fetch_row<HistoryFilter::catmull_rom5>(v, y, s);
+    case HistoryFilter::bilinear:
+      return fetch_row<HistoryFilter::bilinear>(v, y, s);
+    case HistoryFilter::catmull_rom:
+      return fetch_row<HistoryFilter::catmull_rom>(v, y, s);
+    case HistoryFilter::catmull_rom9:
+      return fetch_row<HistoryFilter::catmull_rom9>(v, y, s);
+    case HistoryFilter::catmull_rom5:
+      return fetch_row<HistoryFilter::catmull_rom5>(v, y, s);
   }
 }
 
@@ -38,7 +42,7 @@ void rectify_span(const AccumulateView& v, int y, int begin, int end, const RowS
 
 template <Box kind, int r>
 void rectify_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
-  bool valid = true;
+  bool valid = !v.leave_present_out;
   for (int j = -r; j <= r; ++j) valid = valid && v.rows_valid[y + j];
   // Where every neighbor is known to count, the test for it is left out; the result is the same.
   const int begin = valid ? (r < v.width ? r : v.width) : v.width;
@@ -61,9 +65,12 @@ void rectify(const AccumulateView& v, int y, const RowScratch& s, RowCounts& cou
       if (v.out_clip.origin)
         for (int x = 0; x < v.width; ++x) v.out_clip.origin[y * v.out_clip.stride + x] = 0;
       return;
-    case Box::minmax: return rectify_row<Box::minmax>(v, y, s, counts);
-    case Box::variance: return rectify_row<Box::variance>(v, y, s, counts);
-    case Box::variance_minmax: return rectify_row<Box::variance_minmax>(v, y, s, counts);
+    case Box::minmax:
+      return rectify_row<Box::minmax>(v, y, s, counts);
+    case Box::variance:
+      return rectify_row<Box::variance>(v, y, s, counts);
+    case Box::variance_minmax:
+      return rectify_row<Box::variance_minmax>(v, y, s, counts);
   }
 }
 
@@ -74,13 +81,25 @@ VARVE_INLINE double present_weight(const AccumulateView& v, double total, double
   return v.alpha_rule == AlphaRule::fixed ? steady : biggest(steady, w / (total + w));
 }
 
+/// The rectified history alone; 0 where there is none.
+void copy_history(const AccumulateView& v, int y, const RowScratch& s) {
+  for (int x = 0; x < v.width; ++x) {
+    const bool has_history = s.total[x] > 0;
+    store(v.out_color.origin + y * v.out_color.stride + 4 * x, has_history ? load(s.history + 4 * x) : splat(0.0f));
+    v.out_total.origin[y * v.out_total.stride + x] = s.total[x];
+    v.out_spread.origin[y * v.out_spread.stride + x] = has_history ? s.spread[x] : 0;
+  }
+}
+
 void blend_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
   const float* weight = v.weight.origin + y * v.weight.stride;
   bool all_valid = true;
   for (int x = 0; x < v.width; ++x) {
     const Float4 present = load(v.color.origin + y * v.color.stride + 4 * x);
     const bool has_present = weight[x] > 0, has_history = s.total[x] > 0;
-    const double w = !has_present ? 0.0 : v.sample_weight.origin ? double(v.sample_weight.origin[y * v.sample_weight.stride + x]) : 1.0;
+    const double w = !has_present             ? 0.0
+                     : v.sample_weight.origin ? double(v.sample_weight.origin[y * v.sample_weight.stride + x])
+                                              : 1.0;
     Float4 color = present;
     double a = 1, total = w, spread = has_present ? 1 : 0;
     if (has_history) {
@@ -110,7 +129,10 @@ void blend_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& c
 void accumulate_row(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts) {
   fetch_history(view, y, scratch);
   rectify(view, y, scratch, counts);
-  blend_row(view, y, scratch, counts);
+  if (view.leave_present_out)
+    copy_history(view, y, scratch);
+  else
+    blend_row(view, y, scratch, counts);
 }
 
 }  // namespace varve::VARVE_ISA

@@ -22,8 +22,8 @@ VARVE_INLINE Axis axis_at(double position) {
 
 /// Catmull-Rom weights (Keys, a = -1/2) of the pixels base-1 .. base+2.
 VARVE_INLINE Float4 catmull_rom_weights(float f) {
-  return Float4{f * (-0.5f + f * (1.0f - 0.5f * f)), 1.0f + f * f * (-2.5f + 1.5f * f), f * (0.5f + f * (2.0f - 1.5f * f)),
-                f * f * (-0.5f + 0.5f * f)};
+  return Float4{f * (-0.5f + f * (1.0f - 0.5f * f)), 1.0f + f * f * (-2.5f + 1.5f * f),
+                f * (0.5f + f * (2.0f - 1.5f * f)), f * f * (-0.5f + 0.5f * f)};
 }
 
 /// The same by three taps, the middle one a linear blend of two pixels (the form GPUs use: 9 fetches for 16 pixels).
@@ -45,7 +45,8 @@ VARVE_INLINE Float4 tap(const float* p) {
   return scaled ? load(p) * 0.0625f : load(p);
 }
 
-/// Four pixels of a row, weighed. Differences to the nearest tap are summed, not the taps: a constant stays that constant.
+/// Four pixels of a row, weighed. Differences to the nearest tap are summed, not the taps: a constant stays that
+/// constant.
 template <bool scaled>
 VARVE_INLINE Float4 weigh4(const float* p, Float4 w, Float4 nearest) {
   return (tap<scaled>(p) - nearest) * w[0] + (tap<scaled>(p + 4) - nearest) * w[1] +
@@ -151,7 +152,8 @@ VARVE_INLINE bool same_depth(float a, float b, double tolerance) {
       const bool inside = x >= 0 && y >= 0 && x < v.history_width && y < v.history_height;
       const float total = inside ? v.history_total.origin[y * v.history_total.stride + x] : 0.0f;
       bool passed = total > 0;
-      if (passed && depth && !same_depth(v.history_depth.origin[y * v.history_depth.stride + x], *depth, v.depth_tolerance)) {
+      if (passed && depth &&
+          !same_depth(v.history_depth.origin[y * v.history_depth.stride + x], *depth, v.depth_tolerance)) {
         passed = false;
         r.depth_failed = true;
       }
@@ -205,7 +207,8 @@ VARVE_INLINE void fetch_pixel(const AccumulateView& v, int x, int y, const RowSc
       return;
     }
   }
-  const Taps taps{ax, ay, v.history_color.origin + ay.base * v.history_color.stride + 4 * ax.base, v.history_color.stride};
+  const Taps taps{ax, ay, v.history_color.origin + ay.base * v.history_color.stride + 4 * ax.base,
+                  v.history_color.stride};
   Float4 color = filter_history<filter, false>(taps, v.dering);
   if (__builtin_expect(!finite(color), 0)) {
     // Sums of values near the end of the float range: once more at 1/16, held to what the pixels hold.

@@ -74,6 +74,17 @@ void drop_finished(std::vector<ScheduledFrame>& schedule) {
   schedule = std::move(kept);
 }
 
+/// What was asked for; a sidecar by its numbers, since they may change under its name.
+std::string describe_jitter(const std::string& jitter) {
+  std::string rows;
+  for (const auto& [frame, offset] : parse_jitter_source(jitter).table) {
+    char row[80];
+    std::snprintf(row, sizeof row, "%d:%.17g,%.17g ", frame, offset.x, offset.y);
+    rows += row;
+  }
+  return rows.empty() ? jitter : "table:" + hash_of(rows);
+}
+
 std::filesystem::path canonical(const std::string& path) { return std::filesystem::weakly_canonical(path); }
 
 }  // namespace
@@ -106,14 +117,15 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   std::vector<int> cuts = job.cuts;
   std::sort(cuts.begin(), cuts.end());
   if (!cuts.empty()) text += " cuts=" + format_frame_list(cuts);
-  text += " jitter=" + std::filesystem::path(job.jitter).filename().string() + " convention=" + job.roles.convention;
+  text += " jitter=" + describe_jitter(job.jitter) + " convention=" + job.roles.convention;
   for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
   for (const auto& [role, channel] : job.roles.map) text += " map:" + role + "=" + channel;
   for (const Subject& subject : info.first.subjects) {
     const MotionEncoding& e = subject.backward ? subject.backward_encoding : subject.forward_encoding;
     char encoding[160];
-    std::snprintf(encoding, sizeof encoding, " vectors:%s=%s,%.17g,%.17g,%.17g,%g,%g,%d,%d", subject.layer.c_str(),
-                  subject.convention.c_str(), e.bias, e.scale, e.shutter, e.sign_x, e.sign_y, int(e.unit), int(e.direction));
+    std::snprintf(encoding, sizeof encoding, ",%.17g,%.17g,%.17g,%g,%g,%d,%d", e.bias, e.scale, e.shutter, e.sign_x,
+                  e.sign_y, int(e.unit), int(e.direction));
+    text += " vectors:" + subject.layer + "=" + subject.convention;
     text += encoding;
   }
   for (const std::string& aov : job.request.aovs) text += " aov=" + aov;
@@ -121,6 +133,7 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   if (!job.request.keep_channels) text += " keep=none";
   if (job.compression) text += std::string(" compression=") + name_of(*job.compression);
   text += " zip-level=" + std::to_string(job.zip_level);
+  if (!job.ocio_config.empty()) text += " ocio=" + std::filesystem::path(job.ocio_config).filename().string();
   if (!job.from_space.empty()) text += " from-space=" + job.from_space;
   if (!job.to_space.empty()) text += " to-space=" + job.to_space;
   return text;
@@ -133,15 +146,11 @@ std::string describe_side_inputs(const ResolveJob& job) {
   const bool converts = !job.from_space.empty() || !job.to_space.empty();
   const char* variable = std::getenv("OCIO");
   const std::string config = !converts ? "" : job.ocio_config.empty() && variable ? variable : job.ocio_config;
-  for (const std::string& path : {job.jitter, config}) {
-    std::error_code none;
-    if (!std::filesystem::is_regular_file(path, none)) continue;
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << file.rdbuf();
-    text += " file:" + bytes.str();
-  }
-  return text;
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(config, none)) return text;
+  std::ostringstream bytes;
+  bytes << std::ifstream(config, std::ios::binary).rdbuf();
+  return text + " config:" + bytes.str();
 }
 
 std::string hash_of(const std::string& text) {
@@ -156,11 +165,12 @@ void check_vectors(const ResolveJob& job, const SequenceInfo& info) {
   if (info.frames.size() < 2 || job.roles.convention == "none") return;
   for (const Subject& subject : info.first.subjects)
     if (!subject.backward && !subject.forward)
-      throw Failure(ExitCode::inconsistent,
-                    "'" + info.first.files.front().path + "' (frame " + std::to_string(info.first.frame) + ") has no motion vectors for " +
-                        (subject.layer.empty() ? "its color" : "layer '" + subject.layer + "'") +
-                        "; render them, name them with --map motion.x=CHANNEL or --motion-file, or say --convention none to "
-                        "resolve as if nothing moved");
+      throw Failure(
+          ExitCode::inconsistent,
+          "'" + info.first.files.front().path + "' (frame " + std::to_string(info.first.frame) +
+              ") has no motion vectors for " + (subject.layer.empty() ? "its color" : "layer '" + subject.layer + "'") +
+              "; render them, name them with --map motion.x=CHANNEL or --motion-file, or say --convention none to "
+              "resolve as if nothing moved");
 }
 
 void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& schedule) {
@@ -174,7 +184,8 @@ void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& sch
   const auto check = [&](const SequencePattern& pattern, const char* option, std::set<std::filesystem::path>& outputs) {
     if (writes > 1 && !pattern.has_frame())
       throw Failure(ExitCode::usage, std::string(option) + " '" + pattern.text() + "' names one file for " +
-                                         std::to_string(writes) + " frames; put the frame number in, as in out.####.exr");
+                                         std::to_string(writes) +
+                                         " frames; put the frame number in, as in out.####.exr");
     for (const ScheduledFrame& s : schedule) {
       if (!s.write) continue;
       const std::string path = pattern.path(s.frame);

@@ -12,13 +12,13 @@ namespace varve {
 struct ScheduledFrame {
   int frame = 0;
   bool write = false;
-  bool complete = false;      ///< a finished output of the same parameters is there (--resume)
-  bool restart = false;       ///< history starts anew here: first frame, cut, or gap before it
-  std::string restart_reason; ///< "first frame", "cut", "gap after frame 12"
+  bool complete = false;       ///< a finished output of the same parameters is there (--resume)
+  bool restart = false;        ///< history starts anew here: first frame, cut, or gap before it
+  std::string restart_reason;  ///< "first frame", "cut", "gap after frame 12"
 };
 
-/// Frames in order: requested ones are written, existing ones between them and `preroll` before them only feed the history.
-/// With --resume, frames that no unfinished frame depends on are left out.
+/// Frames in order: requested ones are written, existing ones between them and `preroll` before them only feed the
+/// history. With --resume, frames that no unfinished frame depends on are left out.
 std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash);
 
 /// The frames that schedule[index] is made from, back to its restart, as a frame list.
@@ -28,7 +28,7 @@ std::string frames_used(const std::vector<ScheduledFrame>& schedule, std::size_t
 /// equal bytes wherever it is done.
 std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info);
 
-/// What decides the pixels from beside the frames: names of the role files, contents of the jitter table and of the
+/// What decides the pixels from beside the frames: names of the role files, contents of the
 /// color config (not of the tables that the config refers to). For the hash only.
 std::string describe_side_inputs(const ResolveJob& job);
 

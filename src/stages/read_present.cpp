@@ -23,7 +23,8 @@ Plane<float> read_plane(const RawPlane& raw, const Window& window, float outside
       return;
     }
     std::fill(row, row + (common.x0 - window.x0), outside);
-    const std::byte* from = raw.row(y - raw.window.y0) + std::size_t(common.x0 - raw.window.x0) * bytes_per_pixel(raw.type);
+    const std::byte* from =
+        raw.row(y - raw.window.y0) + std::size_t(common.x0 - raw.window.x0) * bytes_per_pixel(raw.type);
     to_float(raw.type, from, row + (common.x0 - window.x0), std::size_t(common.width()));
     std::fill(row + (common.x1 - window.x0), row + window.width(), outside);
   });
@@ -50,6 +51,8 @@ Plane<glm::vec4> read_color(const Subject& subject, const FileSet& files, const 
   return color;
 }
 
+}  // namespace
+
 Plane<glm::vec2> read_vectors(const VectorChannels& channels, const MotionEncoding& encoding, const FileSet& files,
                               const Window& window, const Window& display_window, double max_length,
                               std::size_t& unusable, Workers& workers) {
@@ -58,8 +61,6 @@ Plane<glm::vec2> read_vectors(const VectorChannels& channels, const MotionEncodi
   const Plane<float> y = read_plane(pixels_of(files, channels[1]), window, outside, workers);
   return decode_motion(x, y, encoding, display_window, max_length, workers, unusable);
 }
-
-}  // namespace
 
 Present read_present(const Subject& subject, const FileSet& pixels, const Window& window, const Window& display_window,
                      const ReadOptions& options, const ColorConversion* into_working_space, ForwardMemory& memory,

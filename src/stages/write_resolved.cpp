@@ -36,8 +36,8 @@ void add_diagnostics(FileOutput& out, OutputPart& part, const ResolvedSubject& r
       workers.for_rows(window.y0, window.y1,
                        [&](int y) { store_row(aov->type, values.row(y), plane.row(y - window.y0), window.width()); });
       const std::string_view component = aov->components.empty() ? "" : aov->components.substr(std::size_t(k), 1);
-      part.channels.push_back({{aov_channel(*aov, *resolved.subject, several_layers, component), aov->type, 1, 1, false},
-                               &plane});
+      part.channels.push_back(
+          {{aov_channel(*aov, *resolved.subject, several_layers, component), aov->type, 1, 1, false}, &plane});
     }
 }
 
@@ -123,9 +123,9 @@ std::string aov_channel(const Aov& aov, const Subject& subject, bool several, st
   return name;
 }
 
-FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels, const std::vector<ResolvedSubject>& subjects,
-                          const std::vector<const Aov*>& aovs, bool keep, const ColorConversion* out_of_working_space,
-                          Workers& workers) {
+FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
+                          const std::vector<ResolvedSubject>& subjects, const std::vector<const Aov*>& aovs, bool keep,
+                          const ColorConversion* out_of_working_space, Workers& workers) {
   FileOutput out;
   const bool several = several_layers(subjects);
   for (int p = 0; p < int(source.parts.size()); ++p) {
@@ -176,6 +176,7 @@ Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubje
   if (aov.name == "weight") fill(of(a.diagnostics.weight));
   if (aov.name == "reject") fill(of(a.diagnostics.reject));
   if (aov.name == "repaired") fill([&](int x, int y) { return 1.0f - present.valid.row(y)[x]; });
+  if (aov.name == "prediction") fill([&](int x, int y) { return resolved.prediction->color.row(y)[x][component]; });
   if (aov.name == "count")
     fill([&](int x, int y) { return a.history.total.row(y)[x] > 0 ? 1.0f / a.history.spread.row(y)[x] : 0.0f; });
   if (aov.name == "motion")

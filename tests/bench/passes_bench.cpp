@@ -22,7 +22,8 @@ struct Scene {
     // Vectors as scenes have them: smooth, with an edge here and there.
     for (int y = 0; y < kFrame.y1; ++y)
       for (int x = 0; x < kFrame.x1; ++x)
-        next.motion.at(x, y) = glm::vec2(-3.3f + 0.001f * float(x), (x / 200 + y / 150) % 3 == 0 ? 5.7f : 0.3f + 0.002f * float(y));
+        next.motion.at(x, y) =
+            glm::vec2(-3.3f + 0.001f * float(x), (x / 200 + y / 150) % 3 == 0 ? 5.7f : 0.3f + 0.002f * float(y));
     history = test::next_history(present, {}, {}, {}, workers);
   }
 };
@@ -33,8 +34,8 @@ Scene& scene() {
 }
 
 void per_pixel(benchmark::State& state) {
-  state.counters["ns/px"] = benchmark::Counter(double(kFrame.pixels()) * 1e-9,
-                                               benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["ns/px"] = benchmark::Counter(
+      double(kFrame.pixels()) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void check(benchmark::State& state, bool good) {
@@ -87,9 +88,11 @@ void BM_weigh_samples(benchmark::State& state, SampleFilter filter) {
   per_pixel(state);
 }
 
-void BM_accumulate(benchmark::State& state, const RecursiveParameters& recursive, const RectifyParameters& rectify, Isa isa) {
+void BM_accumulate(benchmark::State& state, const RecursiveParameters& recursive, const RectifyParameters& rectify,
+                   Isa isa) {
   for (auto _ : state) {
-    const Accumulated a = accumulate(scene().next, scene().history, recursive, rectify, {}, 1, {}, scene().workers, isa);
+    const Accumulated a =
+        accumulate(scene().next, scene().history, recursive, rectify, {}, 1, {}, scene().workers, isa);
     check(state, a.history.total.at(905, 500) == 2.0f);
   }
   per_pixel(state);

@@ -1,6 +1,8 @@
 // varve resolve as a user meets it: a valid command line on a small sequence, then the same with one thing damaged.
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <chrono>
 #include <csignal>
 #include <fstream>
@@ -279,6 +281,11 @@ const std::vector<Damage>& damages() {
        3,
        "missing.ocio"},
       {"report in a folder that is not there", nothing, {"--report", "nowhere/report.json"}, 5, "nowhere"},
+      {"a pipe in place of an output",
+       [](const Folder& f) { fs::remove(f / "out/o.0001.exr"), mkfifo((f / "out/o.0001.exr").c_str(), 0600); },
+       {},
+       5,
+       "out/o.0001.exr"},
       {"report over an input", nothing, {"--report", "in.0003.exr"}, 2, "in.0003.exr"},
       {"report over an output", nothing, {"--report", "out/../out/o.0003.exr"}, 2, "o.0003.exr"},
       {"pictures in a folder that is not there", nothing, {"--preview", "nowhere"}, 5, "nowhere"},

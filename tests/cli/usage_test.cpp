@@ -31,6 +31,8 @@ TEST(Usage, HelpGoesToStandardOutput) {
                                      {"resolve", "-h"},
                                      {"resolve", "--help=all"},
                                      {"probe", "--help"},
+                                     {"synth", "--help=all"},
+                                     {"help", "scenes"},
                                      {"help", "presets"},
                                      {"help", "aovs"},
                                      {"help", "rejection"},
@@ -39,6 +41,7 @@ TEST(Usage, HelpGoesToStandardOutput) {
                                      {"help", "--man"},
                                      {"help", "--man", "resolve"},
                                      {"help", "--man", "probe"},
+                                     {"help", "--man", "synth"},
                                      {"help", "--completion", "bash"},
                                      {"help", "help"}}) {
     const Outcome outcome = run_varve(arguments);
@@ -98,7 +101,7 @@ TEST(Usage, OneThingWrong) {
 
 /// Options that take a value, as the program itself lists them.
 TEST(Usage, EachOptionWithoutItsValue) {
-  for (const std::string command : {"resolve", "probe"}) {
+  for (const std::string command : {"resolve", "probe", "synth"}) {
     std::istringstream help(run_varve({command, "--help=all"}).out);
     int options = 0;
     for (std::string line; std::getline(help, line);) {
@@ -129,6 +132,7 @@ TEST(Usage, BashCompletes) {
   EXPECT_EQ(completed("varve resolve in.exr --dilation = n"), "none nearest\n");
   EXPECT_EQ(completed("varve resolve in.exr --dilation ="), "none nearest longest\n");
   EXPECT_EQ(completed("varve probe --js"), "--json\n");
+  EXPECT_EQ(completed("varve synth quality-a"), "quality-all\n");
   EXPECT_EQ(completed("varve help exit"), "exit-codes\n");
   EXPECT_EQ(completed("varve resolve --alpha 0"), "\n");
 }

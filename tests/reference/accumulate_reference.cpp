@@ -126,12 +126,13 @@ struct BoxBounds {
   Color low, high, mean;
 };
 
-std::optional<BoxBounds> box_of(const Present& present, const RectifyParameters& p, int x, int y) {
+std::optional<BoxBounds> box_of(const Present& present, const RectifyParameters& p, int x, int y,
+                                bool with_centre = true) {
   std::vector<Color> samples;
   const int r = p.window / 2;
   for (int j = y - r; j <= y + r; ++j)
     for (int i = x - r; i <= x + r; ++i)
-      if (present.color.window().contains(i, j) && present.valid.at(i, j) > 0)
+      if (present.color.window().contains(i, j) && present.valid.at(i, j) > 0 && (with_centre || i != x || j != y))
         samples.push_back(rotate(color_of(present.color.at(i, j)), p.space));
   if (samples.empty()) return {};
   BoxBounds b;
@@ -187,7 +188,8 @@ double rectify_color(Color& color, const Color& present, const BoxBounds& b, con
 }
 
 /// The present at a pixel centre: its own sample, or the weighted samples around (math, section 5).
-Color present_at(const Present& present, SampleFilter filter, std::optional<glm::dvec2> jitter, int x, int y, double& weight) {
+Color present_at(const Present& present, SampleFilter filter, std::optional<glm::dvec2> jitter, int x, int y,
+                 double& weight) {
   weight = present.valid.at(x, y) > 0 ? 1 : 0;
   const Color own = color_of(present.color.at(x, y));
   if (filter == SampleFilter::none || !jitter) return own;
@@ -197,7 +199,8 @@ Color present_at(const Present& present, SampleFilter filter, std::optional<glm:
     for (int j = y - 3; j <= y + 3; ++j)
       for (int i = x - 3; i <= x + 3; ++i) {
         if (!present.color.window().contains(i, j) || !(present.valid.at(i, j) > 0)) continue;
-        const double w = reconstruction_kernel(filter, i + jitter->x - x) * reconstruction_kernel(filter, j + jitter->y - y);
+        const double w =
+            reconstruction_kernel(filter, i + jitter->x - x) * reconstruction_kernel(filter, j + jitter->y - y);
         if (positive && w < 0) continue;
         total += w;
         for (std::size_t k = 0; k < 4; ++k) sum[k] += w * double(present.color.at(i, j)[int(k)]);
@@ -217,7 +220,8 @@ Color present_at(const Present& present, SampleFilter filter, std::optional<glm:
 }  // namespace
 
 Pixel accumulate_pixel(const Present& present, const History& previous, const RecursiveParameters& p,
-                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x, int y) {
+                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
+                       int y) {
   Pixel out;
   double w = 1;
   const Color now = present_at(present, p.sample_filter, jitter, x, y, w);
@@ -242,6 +246,21 @@ Pixel accumulate_pixel(const Present& present, const History& previous, const Re
   out.total = past.total + w;
   out.spread = past.spread * (1 - a) * (1 - a) + a * a;
   out.weight = 1 - a;
+  return out;
+}
+
+Pixel predict_pixel(const Present& present, const History& previous, const RecursiveParameters& p,
+                    const RectifyParameters& rectify, int x, int y) {
+  Pixel out;
+  if (previous.empty()) return out;
+  const Fetched past = fetch(previous, present, p, x, y);
+  if (past.total <= 0) return out;
+  out.color = past.color;
+  out.total = past.total;
+  RectifyParameters towards_mean = rectify;
+  towards_mean.anchor = BoxAnchor::mean;
+  if (rectify.box != Box::none)
+    if (const auto box = box_of(present, rectify, x, y, false)) rectify_color(out.color, {}, *box, towards_mean);
   return out;
 }
 

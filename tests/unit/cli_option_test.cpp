@@ -48,7 +48,10 @@ bool takes_numbers(const Option& option) {
 }
 
 const char* command_of(const Option& option) {
-  return (option.commands & kResolve) ? "resolve" : (option.commands & kProbe) ? "probe" : "help";
+  return (option.commands & kResolve) ? "resolve"
+         : (option.commands & kProbe) ? "probe"
+         : (option.commands & kSynth) ? "synth"
+                                      : "help";
 }
 
 TEST(OptionTable, NamesAndLettersAreUniqueWithinACommand) {

@@ -58,7 +58,7 @@ TEST(Conventions, AKnownMoveIsDecoded) {
     double backward_x, backward_y, forward_x, forward_y;  // NaN: not stored
   } cases[] = {
       {"cycles", -6, -8, -6, -8},      {"cycles-fileout", -6, -8, NAN, NAN},
-      {"nuke", -6, -8, 6, 8},          {"varve", -6, 8, NAN, NAN},
+      {"nuke", -6, -8, 6, 8},          {"varve", -6, 8, 6, -8},
       {"vray", NAN, NAN, 3.5, 4.5},    {"arnold", NAN, NAN, 6, 8},
       {"rsmb", NAN, NAN, 3.5, 4.5},    {"maya", NAN, NAN, 0.5 + 6 / 512.0, 0.5 + 8 / 512.0},
       {"c4d", NAN, NAN, 3.5, 4.5},     {"renderman", -6, 8, 6, -8},
