@@ -48,7 +48,9 @@ bool takes_numbers(const Option& option) {
 }
 
 const char* command_of(const Option& option) {
-  return (option.commands & kResolve) ? "resolve" : (option.commands & kProbe) ? "probe" : "help";
+  if (option.commands & kResolve) return "resolve";
+  if (option.commands & kProbe) return "probe";
+  return (option.commands & kCompare) ? "compare" : "help";
 }
 
 TEST(OptionTable, NamesAndLettersAreUniqueWithinACommand) {
