@@ -57,11 +57,12 @@ Value<Settings> preset_value() {
 Value<Settings> convention_value() {
   Value<Settings> value;
   value.choices.push_back({"auto", "told by the names of the channels; refused where the names do not tell"});
+  value.choices.push_back({"none", "vectors are not used: every pixel is taken to be at rest"});
   for (const MotionConvention& row : motion_conventions())
     value.choices.push_back({std::string(row.name), std::string(row.note)});
   value.allowed = choices_text(value.choices);
   value.read = [](Settings& s, std::string_view text) {
-    if (text != "auto" && !find_motion_convention(text)) return false;
+    if (text != "auto" && text != "none" && !find_motion_convention(text)) return false;
     s.job.roles.convention = text;
     return true;
   };

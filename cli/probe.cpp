@@ -11,12 +11,13 @@ namespace varve::cli {
 int run_probe(Settings& settings) {
   finish_job(settings);
   const ResolveJob& job = settings.job;
-  SequenceInfo info;
-  const Plan plan = plan_sequence(job, info);
+  const JitterSource jitter = parse_jitter_source(job.jitter);
+  const SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
+  const Plan plan = make_plan(info, job.parameters, job.request, job.threads);
   std::vector<ChannelStatistics> statistics;
   if (settings.pixels > 0) {
     Workers workers(job.threads);
-    statistics = measure_pixels(info, job.input, job.roles, parse_jitter_source(job.jitter), settings.pixels, workers);
+    statistics = measure_pixels(info, job.input, job.roles, jitter, settings.pixels, workers);
   }
   const std::string text =
       settings.json ? describe_json(info, plan, statistics) : describe_text(info, plan, statistics);

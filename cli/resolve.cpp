@@ -44,10 +44,9 @@ int run_resolve(Settings& settings) {
   Progress progress(settings.progress, settings.quiet);
   std::vector<std::string> rows;
   ResolveEvents events;
-  if (settings.verbose)
-    events.planned = [](const SequenceInfo& info, const Plan& plan) {
-      std::fputs(describe_text(info, plan, {}).c_str(), stderr);
-    };
+  events.planned = [&](const SequenceInfo& info, const Plan& plan) {
+    if (settings.verbose) std::fputs(describe_text(info, plan, {}).c_str(), stderr);
+  };
   events.frame = [&](const FrameReport& report, int done, int total) {
     progress.frame(report, done, total);
     if (!settings.report.empty()) rows.push_back(frame_json(report));

@@ -67,8 +67,8 @@ std::vector<const Aov*> chosen_aovs(const OutputRequest& request) {
 Setup set_up(const ResolveJob& job) {
   const JitterSource jitter = parse_jitter_source(job.jitter);
   SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
-  Workers threads(job.threads);
-  Plan plan = make_plan(info, job.parameters, job.request, threads.count());
+  check_vectors(job, info);
+  Plan plan = make_plan(info, job.parameters, job.request, job.threads);
   Setup s{job, std::move(info), std::move(plan), jitter, {}, {}, chosen_aovs(job.request), {}, {}, {}};
   s.parameters = describe_parameters(job, s.info);
   s.hash = hash_of(s.parameters);
@@ -85,24 +85,28 @@ Setup set_up(const ResolveJob& job) {
 void check_same_subjects(const FrameHeaders& first, const FrameHeaders& now) {
   const std::string where = "frame " + std::to_string(now.frame) + " ('" + now.files.front().path + "')";
   if (now.subjects.size() != first.subjects.size())
-    throw Failure(ExitCode::inconsistent, where + " has " + std::to_string(now.subjects.size()) + " color layers to resolve, frame " +
-                                              std::to_string(first.frame) + " has " + std::to_string(first.subjects.size()) +
+    throw Failure(ExitCode::inconsistent, where + " has " + std::to_string(now.subjects.size()) +
+                                              " color layers to resolve, frame " + std::to_string(first.frame) +
+                                              " has " + std::to_string(first.subjects.size()) +
                                               "; render it again, or leave it out with --frames");
   for (std::size_t i = 0; i < now.subjects.size(); ++i) {
     const Subject &a = first.subjects[i], &b = now.subjects[i];
     const std::string layer = b.layer.empty() ? "the main layer" : "layer '" + b.layer + "'";
     if (a.layer != b.layer || a.view != b.view)
-      throw Failure(ExitCode::inconsistent, where + " has " + layer + " where frame " + std::to_string(first.frame) + " has '" +
-                                                a.layer + "'; choose with --layer, or leave the frame out with --frames");
+      throw Failure(ExitCode::inconsistent, where + " has " + layer + " where frame " + std::to_string(first.frame) +
+                                                " has '" + a.layer +
+                                                "'; choose with --layer, or leave the frame out with --frames");
     for (std::size_t k = 0; k < 4; ++k)
       if (a.color[k].has_value() != b.color[k].has_value())
-        throw Failure(ExitCode::inconsistent, where + ", " + layer + ": channel " + "RGBA"[k] + " is " + (b.color[k] ? "there" : "missing") +
-                                                  " but not so in frame " + std::to_string(first.frame) +
+        throw Failure(ExitCode::inconsistent, where + ", " + layer + ": channel " + "RGBA"[k] + " is " +
+                                                  (b.color[k] ? "there" : "missing") + " but not so in frame " +
+                                                  std::to_string(first.frame) +
                                                   "; render it again, or leave it out with --frames");
     if (a.backward.has_value() != b.backward.has_value() || a.forward.has_value() != b.forward.has_value() ||
         a.depth.has_value() != b.depth.has_value())
-      throw Failure(ExitCode::inconsistent, where + ", " + layer + ": its depth or motion channels are not those of frame " +
-                                                std::to_string(first.frame) + "; render it again, or leave it out with --frames");
+      throw Failure(ExitCode::inconsistent,
+                    where + ", " + layer + ": its depth or motion channels are not those of frame " +
+                        std::to_string(first.frame) + "; render it again, or leave it out with --frames");
   }
 }
 
@@ -146,9 +150,9 @@ Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHead
   const Parameters& parameters = s.job.parameters;
   if (scheduled.restart) state = {};
   Resolved r;
-  r.present = read_present(subject, pixels, part.data_window, part.display_window,
-                           {parameters.motion, s.plan.use_depth, s.plan.use_motion},
-                           s.into_working_space ? &*s.into_working_space : nullptr, state.forward, report.vectors_bad, workers);
+  r.present = read_present(
+      subject, pixels, part.data_window, part.display_window, {parameters.motion, s.plan.use_depth, s.plan.use_motion},
+      s.into_working_space ? &*s.into_working_space : nullptr, state.forward, report.vectors_bad, workers);
   std::optional<glm::dvec2> jitter;
   if (headers.jitter) jitter = glm::dvec2(headers.jitter->x, headers.jitter->y);
   const std::uint32_t restart_bit = scheduled.restart_reason == "first frame" ? kRejectFirstFrame : kRejectCut;
@@ -163,17 +167,22 @@ Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHead
 
 WriteOptions write_options(const Setup& s, const std::string& frames_used) {
   return {s.job.zip_level,
-          {{"varve:version", version()}, {"varve:parameters", s.parameters}, {"varve:hash", s.hash}, {"varve:frames", frames_used}}};
+          {{"varve:version", version()},
+           {"varve:parameters", s.parameters},
+           {"varve:hash", s.hash},
+           {"varve:frames", frames_used}}};
 }
 
-void write_outputs(const Setup& s, const FrameHeaders& headers, const FileSet& pixels, const std::vector<ResolvedSubject>& resolved,
-                   const std::string& frames_used, FrameReport& report, Workers& workers) {
+void write_outputs(const Setup& s, const FrameHeaders& headers, const FileSet& pixels,
+                   const std::vector<ResolvedSubject>& resolved, const std::string& frames_used, FrameReport& report,
+                   Workers& workers) {
   const FileHeader& source = headers.files.front();
   const WriteOptions options = write_options(s, frames_used);
   const std::vector<const Aov*> none;
   const bool apart = s.job.diagnostics.has_value();
-  FileOutput color = resolved_parts(source, pixels.front(), resolved, apart ? none : s.aovs, s.job.request.keep_channels,
-                                    s.out_of_working_space ? &*s.out_of_working_space : nullptr, workers);
+  FileOutput color =
+      resolved_parts(source, pixels.front(), resolved, apart ? none : s.aovs, s.job.request.keep_channels,
+                     s.out_of_working_space ? &*s.out_of_working_space : nullptr, workers);
   for (OutputPart& part : color.parts)
     if (!part.copy_chunks) part.compression = s.job.compression;
   report.half_overflows = color.half_overflows;
@@ -226,7 +235,8 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     // A finished frame is read again only where a later one needs its history.
     const bool feeds_history = i + 1 < schedule.size() && !schedule[i + 1].restart && !schedule[i + 1].complete;
     bool needed = !scheduled.complete || feeds_history;
-    for (std::size_t k = i + 1; !needed && k < schedule.size() && !schedule[k].restart; ++k) needed = !schedule[k].complete;
+    for (std::size_t k = i + 1; !needed && k < schedule.size() && !schedule[k].restart; ++k)
+      needed = !schedule[k].complete;
     if (!needed) {
       report.skipped = true;
       ++summary.frames_skipped;
@@ -246,7 +256,8 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     std::vector<Resolved> resolved;
     std::vector<ResolvedSubject> subjects;
     for (std::size_t k = 0; k < headers.subjects.size(); ++k)
-      resolved.push_back(resolve_subject(s, headers.subjects[k], headers, pixels, scheduled, states[k], report, workers));
+      resolved.push_back(
+          resolve_subject(s, headers.subjects[k], headers, pixels, scheduled, states[k], report, workers));
     for (std::size_t k = 0; k < resolved.size(); ++k)
       subjects.push_back({&headers.subjects[k], &resolved[k].present, &resolved[k].accumulated});
     report.resolve_seconds = clock.lap();

@@ -18,12 +18,12 @@ struct FrameReport {
   bool written = false, skipped = false;  ///< skipped: complete from an earlier run (--resume); neither: pre-roll
   double read_seconds = 0, resolve_seconds = 0, write_seconds = 0;
   std::size_t pixels = 0, not_finite = 0, vectors_bad = 0, restarted = 0, clipped = 0, half_overflows = 0;
-  std::string restart;                    ///< why the history was dropped; empty if it was not
+  std::string restart;  ///< why the history was dropped; empty if it was not
 };
 
 struct ResolveSummary {
   int frames_written = 0, frames_skipped = 0;
-  bool stopped = false;                   ///< asked to stop between frames
+  bool stopped = false;  ///< asked to stop between frames
 };
 
 /// Calls of the resolver to whoever runs it. All may be empty.
@@ -31,7 +31,7 @@ struct ResolveEvents {
   std::function<void(const SequenceInfo&, const Plan&)> planned;
   std::function<void(const FrameReport&, int done, int total)> frame;
   std::function<void(const std::string& sentence)> warning;
-  std::function<bool()> should_stop;      ///< looked at between the stages of a frame; no half file remains
+  std::function<bool()> should_stop;  ///< looked at between the stages of a frame; no half file remains
 };
 
 /// Headers, plan and preflight only (--dry-run, probe). Throws Failure.

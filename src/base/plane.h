@@ -25,7 +25,7 @@ class Plane {
     stride_ = (columns * sizeof(T) + kAlign - 1) / kAlign * kAlign / sizeof(T);
     rows_ = std::size_t(window.height()) + 2 * std::size_t(border);
     if (stride_ * rows_ > 0)
-      data_.reset(static_cast<T*>(::operator new(stride_ * rows_ * sizeof(T), std::align_val_t(kAlign))));
+      data_.reset(static_cast<T*>(::operator new(stride_* rows_ * sizeof(T), std::align_val_t(kAlign))));
   }
   Plane(const Window& window, int border, const T& value) : Plane(window, border) { fill(value); }
 

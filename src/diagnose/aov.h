@@ -11,12 +11,12 @@
 namespace varve {
 
 struct Aov {
-  std::string_view name;       ///< as given to --aov; the channel is varve.<name>[.<component>]
-  std::string_view components; ///< "" for one channel, else one letter each: "xy"
+  std::string_view name;        ///< as given to --aov; the channel is varve.<name>[.<component>]
+  std::string_view components;  ///< "" for one channel, else one letter each: "xy"
   PixelType type;
   std::string_view unit;
   std::string_view range;
-  std::string_view colormap;   ///< OpenImageIO color map for --preview
+  std::string_view colormap;         ///< OpenImageIO color map for --preview
   double preview_low, preview_high;  ///< values shown as the ends of the color map
   std::string_view meaning;
 };

@@ -24,9 +24,9 @@ struct Channel {
 
 struct Attribute {
   std::string name, type;
-  std::string text;              ///< the value as text; empty for types that have none
-  std::vector<double> numbers;   ///< int, float, double, v2*, v3*, box2* (ends inclusive, as stored), m33*, m44*, rational,
-                                 ///< chromaticities, floatvector, keycode, timecode; matrices row major
+  std::string text;             ///< the value as text; empty for types that have none
+  std::vector<double> numbers;  ///< int, float, double, v2*, v3*, box2* (ends inclusive, as stored), m33*, m44*,
+                                ///< rational, chromaticities, floatvector, keycode, timecode; matrices row major
 };
 
 struct Part {

@@ -26,8 +26,8 @@ struct JitterSource {
 /// Throws Failure(usage) for an unknown name, Failure(input) with path and line for a bad CSV.
 JitterSource parse_jitter_source(const std::string& text);
 
-/// Jitter of a frame; none when the source does not know it. `automatic` reads the attribute `jitter` (v2f) and the JSON in
-/// Cycles' `Note` of the part, and nothing else.
+/// Jitter of a frame; none when the source does not know it. `automatic` reads the attribute `jitter` (v2f) and the
+/// JSON in Cycles' `Note` of the part, and nothing else.
 std::optional<Jitter> jitter_of(const JitterSource& source, const Part& part, int frame);
 
 }  // namespace varve

@@ -19,14 +19,14 @@ struct OutputChannel {
 };
 
 struct OutputPart {
-  int source_part = 0;      ///< part of the source that lends attributes, windows, name and view
-  bool copy_chunks = false; ///< the part is written as it is, chunk by chunk, never decoded (flat, tiled or deep)
-  std::vector<OutputChannel> channels;      ///< all channels of the part when !copy_chunks; any order
-  std::optional<Compression> compression;   ///< default: the source's if lossless, else ZIP
+  int source_part = 0;       ///< part of the source that lends attributes, windows, name and view
+  bool copy_chunks = false;  ///< the part is written as it is, chunk by chunk, never decoded (flat, tiled or deep)
+  std::vector<OutputChannel> channels;     ///< all channels of the part when !copy_chunks; any order
+  std::optional<Compression> compression;  ///< default: the source's if lossless, else ZIP
 };
 
 struct WriteOptions {
-  int zip_level = 4;  ///< 1..9, libdeflate's scale
+  int zip_level = 1;  ///< 1..9, libdeflate's scale; 1 costs a third less to encode than 4 for files 2 % larger
   std::vector<std::pair<std::string, std::string>> attributes;  ///< strings set in the first part (provenance)
 };
 

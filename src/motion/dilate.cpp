@@ -1,67 +1,81 @@
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "motion/motion.h"
 
 namespace varve {
 namespace {
 
-/// How strongly a neighbor claims the pixel: the larger wins. NaN vectors claim nothing.
-template <Dilation dilation>
-float claim(const Plane<glm::vec2>& motion, const Plane<float>& depth, int x, int y) {
-  const glm::vec2 v = motion.at(x, y);
-  const float length2 = v.x * v.x + v.y * v.y;
-  if (!(length2 >= 0)) return -std::numeric_limits<float>::infinity();
-  if constexpr (dilation == Dilation::longest) return length2;
-  return -depth.at(x, y);
-}
+// The 3x3 in reading order.
+constexpr std::ptrdiff_t kDown[9] = {-1, -1, -1, 0, 0, 0, 1, 1, 1};
+constexpr std::ptrdiff_t kRight[9] = {-1, 0, 1, -1, 0, 1, -1, 0, 1};
 
-struct Choice {
-  int x, y;
-};
+constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
-template <Dilation dilation>
-Choice choose(const Plane<glm::vec2>& motion, const Plane<float>& depth, int x, int y) {
+/// How strongly each pixel claims its neighbors: the larger wins, NaN vectors and the border claim nothing.
+Plane<float> claims(const Plane<glm::vec2>& motion, const Plane<float>& depth, Dilation dilation, Workers& workers) {
   const Window& w = motion.window();
-  Choice best{x, y};
-  float strongest = claim<dilation>(motion, depth, x, y);
-  const glm::vec2 own = motion.at(x, y);
-  bool usable = own.x == own.x;
-  for (int j = std::max(w.y0, y - 1); j <= std::min(w.y1 - 1, y + 1); ++j)
-    for (int i = std::max(w.x0, x - 1); i <= std::min(w.x1 - 1, x + 1); ++i) {
-      const glm::vec2 v = motion.at(i, j);
-      if (!(v.x == v.x)) continue;
-      const float strength = claim<dilation>(motion, depth, i, j);
-      if (strength > strongest || !usable) {
-        best = {i, j};
-        strongest = strength;
-        usable = true;
-      }
+  Plane<float> claim(w, 1);
+  workers.for_rows(w.y0 - 1, w.y1 + 1, [&](int y) {
+    float* row = claim.row(y);
+    if (y < w.y0 || y >= w.y1) {
+      std::fill(row - 1, row + w.width() + 1, kNothing);
+      return;
     }
-  return best;
-}
-
-template <Dilation dilation>
-DilatedMotion dilate(const Plane<glm::vec2>& motion, const Plane<float>& depth, Workers& workers) {
-  const Window& w = motion.window();
-  DilatedMotion out{Plane<glm::vec2>(w), depth.empty() ? Plane<float>() : Plane<float>(w)};
-  workers.for_rows(w.y0, w.y1, [&](int y) {
-    for (int x = w.x0; x < w.x1; ++x) {
-      const Choice from = choose<dilation>(motion, depth, x, y);
-      out.motion.at(x, y) = motion.at(from.x, from.y);
-      if (!depth.empty()) out.depth.at(x, y) = depth.at(from.x, from.y);
+    row[-1] = row[w.width()] = kNothing;
+    const glm::vec2* v = motion.row(y);
+    for (int x = 0; x < w.width(); ++x) {
+      const float length2 = v[x].x * v[x].x + v[x].y * v[x].y;
+      // Background is as far as can be, but its vector counts.
+      const float near =
+          dilation == Dilation::nearest ? std::max(-depth.row(y)[x], -std::numeric_limits<float>::max()) : length2;
+      row[x] = length2 >= 0 ? near : kNothing;
     }
   });
-  return out;
+  return claim;
+}
+
+/// For each pixel of a row, which of the 3x3 (0..8 in reading order) claims it most; the pixel itself wins ties, then
+/// reading order. Plain loops over the row, one per neighbor, so that they run on vectors.
+void choose_row(const Plane<float>& claim, int y, int width, float* strongest, std::int32_t* choice) {
+  std::copy_n(claim.row(y), width, strongest);
+  std::fill_n(choice, width, 4);
+  for (int n = 0; n < 9; ++n) {
+    const float* neighbor = claim.row(y + n / 3 - 1) + n % 3 - 1;
+    for (int x = 0; x < width; ++x) {
+      const bool wins = neighbor[x] > strongest[x];
+      choice[x] = wins ? n : choice[x];
+      strongest[x] = wins ? neighbor[x] : strongest[x];
+    }
+  }
 }
 
 }  // namespace
 
 DilatedMotion dilate_motion(Plane<glm::vec2> motion, const Plane<float>& depth, Dilation dilation, Workers& workers) {
-  if (dilation == Dilation::longest) return dilate<Dilation::longest>(motion, depth, workers);
-  if (dilation == Dilation::nearest && !depth.empty()) return dilate<Dilation::nearest>(motion, depth, workers);
-  return {std::move(motion), depth.empty() ? Plane<float>() : depth.clone()};
+  if (dilation == Dilation::none || (dilation == Dilation::nearest && depth.empty()))
+    return {std::move(motion), depth.empty() ? Plane<float>() : depth.clone()};
+  const Window& w = motion.window();
+  const Plane<float> claim = claims(motion, depth, dilation, workers);
+  DilatedMotion out{Plane<glm::vec2>(w), depth.empty() ? Plane<float>() : Plane<float>(w)};
+  workers.for_rows(w.y0, w.y1, [&](int y) {
+    std::vector<float> strongest(std::size_t(w.width()));
+    std::vector<std::int32_t> choice(std::size_t(w.width()));
+    choose_row(claim, y, w.width(), strongest.data(), choice.data());
+    // Where each of the nine lies; rows beyond the window are never chosen.
+    const auto take = [&](const auto& from, auto& to) {
+      for (int x = 0; x < w.width(); ++x) {
+        const int n = choice[std::size_t(x)];
+        to.row(y)[x] = from.row(y)[kDown[n] * from.stride() + kRight[n] + x];
+      }
+    };
+    take(motion, out.motion);
+    if (!depth.empty()) take(depth, out.depth);
+  });
+  return out;
 }
 
 }  // namespace varve

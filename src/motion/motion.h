@@ -1,4 +1,5 @@
-// From stored vectors to the backward motion that a pixel follows: decode, invert where only the future is known, dilate.
+// From stored vectors to the backward motion that a pixel follows: decode, invert where only the future is known,
+// dilate.
 #pragma once
 
 #include <optional>
@@ -24,20 +25,22 @@ struct MotionParameters {
   DepthKind depth_kind = DepthKind::distance;
 };
 
-/// Stored vectors to pixels, y down: `decoded = sign * ((v - bias) * scale) / shutter`, then the unit. `x` and `y` cover the
-/// same window. Vectors that are not finite, or longer than max_length, become NaN in both parts.
-/// Returns how many did, through `unusable`.
+/// Stored vectors to pixels, y down: `decoded = sign * ((v - bias) * scale) / shutter`, then the unit. `x` and `y`
+/// cover the same window. Vectors that are not finite, or longer than max_length, become NaN in both parts. Returns how
+/// many did, through `unusable`.
 Plane<glm::vec2> decode_motion(const Plane<float>& x, const Plane<float>& y, const MotionEncoding& encoding,
-                               const Window& display_window, double max_length, Workers& workers, std::size_t& unusable);
+                               const Window& display_window, double max_length, Workers& workers,
+                               std::size_t& unusable);
 
-/// Depth in the program's terms: planar distance, larger is farther, background +inf. Background is: not finite, zero or
-/// below (as a distance), or from `background` on.
+/// Depth in the program's terms: planar distance, larger is farther, background +inf. Background is: not finite, zero
+/// or below (as a distance), or from `background` on.
 void canonical_depth(Plane<float>& depth, DepthKind kind, double background, Workers& workers);
 
-/// Backward motion from the vectors of the previous frame to this one: each previous pixel lands, with its motion turned round,
-/// on the four pixels around where it goes; the nearest surface wins, then the closest landing, then the first in
-/// reading order. Where nothing lands (a surface that was hidden), this frame's own forward vector turned round stands in.
-/// `previous_depth` may be empty. Reads: the whole previous frame. Size of the result: `forward.window()`.
+/// Backward motion from the vectors of the previous frame to this one: each previous pixel lands, with its motion
+/// turned round, on the four pixels around where it goes; the nearest surface wins, then the closest landing, then the
+/// first in reading order. Where nothing lands (a surface that was hidden), this frame's own forward vector turned
+/// round stands in. `previous_depth` may be empty. Reads: the whole previous frame. Size of the result:
+/// `forward.window()`.
 Plane<glm::vec2> invert_forward_motion(const Plane<glm::vec2>& previous_forward, const Plane<float>& previous_depth,
                                        const Plane<glm::vec2>& forward);
 
@@ -47,8 +50,8 @@ struct DilatedMotion {
   Plane<float> depth;
 };
 
-/// 3x3 dilation; reads a border of one pixel, neighbors outside the window do not count. Ties go to the pixel itself, then in
-/// reading order. NaN vectors take no part; a pixel whose own vector is NaN takes a neighbor's if there is one.
+/// 3x3 dilation; reads a border of one pixel, neighbors outside the window do not count. Ties go to the pixel itself,
+/// then in reading order. NaN vectors take no part; a pixel whose own vector is NaN takes a neighbor's if there is one.
 /// `nearest` needs a depth; where all is background the pixel keeps its own vector.
 DilatedMotion dilate_motion(Plane<glm::vec2> motion, const Plane<float>& depth, Dilation dilation, Workers& workers);
 

@@ -15,14 +15,14 @@ struct CodecCost {
   double decode, encode;
 };
 
-// Measured on 1080p frames (research/io_floor.md, section 1): zip and zips through libdeflate level 4; the others
-// through the OpenEXR C++ API. rle, pxr24 and b44 were not measured: pxr24 is zlib, the others are taken as light work.
-constexpr CodecCost kNone{0.2, 0.9}, kLight{1.5, 3}, kZip{1.9, 9}, kPiz{5, 11}, kZlib{4.5, 18}, kDwa{2.6, 16};
+// Measured on 1080p frames: zip and zips through libdeflate level 1, the others through the OpenEXR C++ API. rle, pxr24
+// and b44 were not measured: pxr24 is zlib, the others are taken as light work.
+constexpr CodecCost kNone{0.2, 0.9}, kLight{1.5, 3}, kZip{1.9, 6}, kPiz{5, 11}, kZlib{4.5, 18}, kDwa{2.6, 16};
 
-// Nanoseconds per pixel and pass, one thread with AVX2 (io_floor.md, section 3); sanitize, inversion of forward
-// vectors, depth test, sample weights and diagnostics are set by their traffic and not measured yet.
-constexpr double kConvert = 1.5, kSanitize = 1, kMotion = 0.5, kInvert = 12, kDilate = 1.1, kHistory = 4.1,
-                 kDepthTest = 1, kSampleWeights = 2, kBox = 1.5, kBlend = 1.7, kDiagnostic = 0.5;
+// Nanoseconds per pixel and pass, one thread with AVX2, as tests/bench/passes_bench prints them; inversion of forward
+// vectors, depth test and diagnostics are set by their traffic and not measured yet.
+constexpr double kConvert = 1.5, kSanitize = 1.6, kMotion = 1.1, kInvert = 12, kDilate = 8.5, kHistory = 22,
+                 kDepthTest = 1, kSampleWeights = 20, kBox = 28, kBlend = 8, kDiagnostic = 0.5;
 
 CodecCost cost_of(Compression compression) {
   switch (compression) {

@@ -11,28 +11,28 @@ namespace varve {
 
 /// A pass that runs, or the reason why it does not.
 struct PlannedPass {
-  std::string name;    ///< sanitize, motion, dilate, reproject, rectify, sample weights, ...
+  std::string name;  ///< sanitize, motion, dilate, reproject, rectify, sample weights, ...
   bool runs = false;
   std::string reason;  ///< one sentence
 };
 
 /// What is to be written.
 struct OutputRequest {
-  std::vector<std::string> aovs;    ///< names of the diagnostic table; {"all"}
-  bool diagnostics_apart = false;   ///< in files of their own
-  bool keep_channels = true;        ///< pass the other channels and parts through
+  std::vector<std::string> aovs;   ///< names of the diagnostic table; {"all"}
+  bool diagnostics_apart = false;  ///< in files of their own
+  bool keep_channels = true;       ///< pass the other channels and parts through
 };
 
 struct Plan {
   std::vector<PlannedPass> passes;
-  std::vector<ChannelRef> channels;   ///< with a role, read for every frame (positions in the first frame's files);
-                                      ///< channels that are only passed through are not among them
-  bool use_depth = false;             ///< depth is read and used
+  std::vector<ChannelRef> channels;  ///< with a role, read for every frame (positions in the first frame's files);
+                                     ///< channels that are only passed through are not among them
+  bool use_depth = false;            ///< depth is read and used
   bool use_motion = false;
   bool use_jitter = false;
-  std::size_t bytes = 0;              ///< peak memory expected
-  double seconds_per_frame = 0;       ///< expected wall time
-  std::vector<std::string> notes;     ///< assumptions and warnings, a sentence each
+  std::size_t bytes = 0;           ///< peak memory expected
+  double seconds_per_frame = 0;    ///< expected wall time
+  std::vector<std::string> notes;  ///< assumptions and warnings, a sentence each
 };
 
 /// Throws Failure(inconsistent) when what is asked for cannot be done with what is there (naming the remedy).

@@ -22,29 +22,32 @@ struct InputSequence {
 /// One frame as its headers show it.
 struct FrameHeaders {
   int frame = 0;
-  std::vector<FileHeader> files;     ///< color file, then the role files
-  std::vector<Subject> subjects;     ///< found again in each frame, since parts and channels may move
+  std::vector<FileHeader> files;  ///< color file, then the role files
+  std::vector<Subject> subjects;  ///< found again in each frame, since parts and channels may move
   std::optional<Jitter> jitter;
 };
 
-/// Reads and checks the headers of one frame. Throws Failure(input) naming file and frame, or what find_subjects throws.
-FrameHeaders read_frame_headers(const InputSequence& input, int frame, const RoleRequest& roles, const JitterSource& jitter);
+/// Reads and checks the headers of one frame. Throws Failure(input) naming file and frame, or what find_subjects
+/// throws.
+FrameHeaders read_frame_headers(const InputSequence& input, int frame, const RoleRequest& roles,
+                                const JitterSource& jitter);
 
 /// A sequence at a glance.
 struct SequenceInfo {
-  std::vector<int> frames;  ///< on disk (or asked for), ascending
-  std::vector<int> gaps;    ///< missing between first and last
-  FrameHeaders first;       ///< the frame the plan is made from
-  bool windows_move = false;          ///< a data window differs between frames
-  bool windows_differ = false;        ///< display windows differ between frames
+  std::vector<int> frames;      ///< on disk (or asked for), ascending
+  std::vector<int> gaps;        ///< missing between first and last
+  FrameHeaders first;           ///< the frame the plan is made from
+  bool windows_move = false;    ///< a data window differs between frames
+  bool windows_differ = false;  ///< display windows differ between frames
   int frames_with_jitter = 0;
-  std::string jitter_source;          ///< "none found", or where from
-  std::string camera;                 ///< "none found", or which attributes, and in how many frames
+  std::string jitter_source;  ///< "none found", or where from
+  std::string camera;         ///< "none found", or which attributes, and in how many frames
   int frames_with_camera = 0;
-  std::vector<std::string> notes;     ///< channels that differ between frames, a jitter.csv beside the frames, ...
+  std::vector<std::string> notes;  ///< channels that differ between frames, a jitter.csv beside the frames, ...
 };
 
-/// Reads every header of the chosen frames (empty: all on disk). Throws Failure(input) when a file is missing or broken.
+/// Reads every header of the chosen frames (empty: all on disk). Throws Failure(input) when a file is missing or
+/// broken.
 SequenceInfo probe_sequence(const InputSequence& input, const std::vector<int>& frames, const RoleRequest& roles,
                             const JitterSource& jitter);
 
@@ -55,7 +58,8 @@ struct ChannelStatistics {
   double least = 0, greatest = 0, mean = 0;  ///< over the finite pixels
   std::size_t pixels = 0, not_finite = 0, zero = 0;
 };
-std::vector<ChannelStatistics> measure_pixels(const SequenceInfo& info, const InputSequence& input, const RoleRequest& roles,
-                                              const JitterSource& jitter, int frames, Workers& workers);
+std::vector<ChannelStatistics> measure_pixels(const SequenceInfo& info, const InputSequence& input,
+                                              const RoleRequest& roles, const JitterSource& jitter, int frames,
+                                              Workers& workers);
 
 }  // namespace varve

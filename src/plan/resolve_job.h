@@ -20,16 +20,16 @@ struct ResolveJob {
   int preroll = 0;                             ///< frames read before the first one written, to warm the history up
   std::vector<int> cuts;                       ///< first frames of new shots
   RoleRequest roles;
-  std::string jitter = "auto";                 ///< see parse_jitter_source
+  std::string jitter = "auto";  ///< see parse_jitter_source
   Parameters parameters;
   OutputRequest request;
   std::optional<Compression> compression;
-  int zip_level = 4;
+  int zip_level = 1;
   std::string ocio_config, from_space, to_space;  ///< color conversion around the resolve; empty: none
   std::string preview_folder;                     ///< PNG of color and diagnostics; empty: none
-  std::string display, view;                      ///< OpenColorIO display and view of the previews; empty: the config's default
+  std::string display, view;  ///< OpenColorIO display and view of the previews; empty: the config's default
   bool resume = false;
-  int threads = 0;                                ///< 0: every processor
+  int threads = 0;  ///< 0: every processor
 };
 
 }  // namespace varve

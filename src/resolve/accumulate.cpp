@@ -11,7 +11,8 @@ namespace {
 
 template <class P>
 auto* floats(P& pixels) {
-  using Float = std::conditional_t<std::is_const_v<std::remove_reference_t<decltype(*pixels.row(0))>>, const float, float>;
+  using Float =
+      std::conditional_t<std::is_const_v<std::remove_reference_t<decltype(*pixels.row(0))>>, const float, float>;
   return reinterpret_cast<Float*>(pixels.row(pixels.window().y0));
 }
 
@@ -59,7 +60,9 @@ struct Scratch {
   Plane<std::uint32_t> reject;
 
   explicit Scratch(int width)
-      : history(Window{0, 0, width, 1}), total(Window{0, 0, width, 1}), spread(Window{0, 0, width, 1}),
+      : history(Window{0, 0, width, 1}),
+        total(Window{0, 0, width, 1}),
+        spread(Window{0, 0, width, 1}),
         reject(Window{0, 0, width, 1}) {}
   RowScratch view() { return {floats(history), total.row(0), spread.row(0), reject.row(0)}; }
 };
@@ -93,7 +96,8 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
   const Plane<glm::vec4> ycocg = rotated ? rotate_to_ycocg(present.color, workers) : Plane<glm::vec4>();
 
   // At rest: every pixel stays where it is.
-  const Plane<glm::vec2> at_rest = present.motion.empty() ? Plane<glm::vec2>(w, 0, glm::vec2(0.0f)) : Plane<glm::vec2>();
+  const Plane<glm::vec2> at_rest =
+      present.motion.empty() ? Plane<glm::vec2>(w, 0, glm::vec2(0.0f)) : Plane<glm::vec2>();
 
   AccumulateView v{};
   v.width = w.width();
@@ -160,7 +164,8 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
     out.counts.clipped += c.clipped;
     out.counts.vectors_bad += c.vectors_bad;
   }
-  if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty()) out.history.depth = present.depth.clone();
+  if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty())
+    out.history.depth = present.depth.clone();
   return out;
 }
 

@@ -17,20 +17,20 @@ namespace varve {
 
 /// Exponential history. Sources: Yang 2009 slide 9, Salvi 2016.
 struct RecursiveParameters {
-  double alpha = 0.1;                     ///< weight of the present in the steady state, (0, 1]
+  double alpha = 0.1;  ///< weight of the present in the steady state, (0, 1]
   AlphaRule alpha_rule = AlphaRule::mean;
   HistoryFilter history_filter = HistoryFilter::catmull_rom;
-  bool dering = true;                     ///< hold a Catmull-Rom fetch between its four nearest pixels
+  bool dering = true;  ///< hold a Catmull-Rom fetch between its four nearest pixels
   Disocclusion disocclusion = Disocclusion::window;
-  double depth_tolerance = 0.05;          ///< relative difference of depth that still is the same surface
+  double depth_tolerance = 0.05;                    ///< relative difference of depth that still is the same surface
   SampleFilter sample_filter = SampleFilter::none;  ///< reconstruct the present from true sample positions
 };
 
 /// What history may say. Sources: Salvi 2016 (variance clipping), Pedersen 2016, Lopez.
 struct RectifyParameters {
   Box box = Box::variance;
-  double gamma = 1.0;                     ///< half size of the variance box in standard deviations
-  int window = 3;                         ///< edge of the neighborhood: 3, 5 or 7
+  double gamma = 1.0;  ///< half size of the variance box in standard deviations
+  int window = 3;      ///< edge of the neighborhood: 3, 5 or 7
   BoxRule rule = BoxRule::clip;
   BoxAnchor anchor = BoxAnchor::present;  ///< clip towards the present (held inside the box) or the mean
   BoxSpace space = BoxSpace::rgb;

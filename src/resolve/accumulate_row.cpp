@@ -19,33 +19,44 @@ void fetch_history(const AccumulateView& v, int y, const RowScratch& s) {
   }
   for (int x = 0; x < v.width; ++x) s.reject[x] = 0;
   switch (v.filter) {
-    case HistoryFilter::bilinear: return fetch_row<HistoryFilter::bilinear>(v, y, s);
-    case HistoryFilter::catmull_rom: return fetch_row<HistoryFilter::catmull_rom>(v, y, s);
-    case HistoryFilter::catmull_rom9: return fetch_row<HistoryFilter::catmull_rom9>(v, y, s);
-    case HistoryFilter::catmull_rom5: return fetch_row<HistoryFilter::catmull_rom5>(v, y, s);
+    case HistoryFilter::bilinear:
+      return fetch_row<HistoryFilter::bilinear>(v, y, s);
+    case HistoryFilter::catmull_rom:
+      return fetch_row<HistoryFilter::catmull_rom>(v, y, s);
+    case HistoryFilter::catmull_rom9:
+      return fetch_row<HistoryFilter::catmull_rom9>(v, y, s);
+    case HistoryFilter::catmull_rom5:
+      return fetch_row<HistoryFilter::catmull_rom5>(v, y, s);
   }
 }
 
-template <Box kind, bool masked>
+template <Box kind, int r, bool masked>
 void rectify_span(const AccumulateView& v, int y, int begin, int end, const RowScratch& s, RowCounts& counts) {
+  float* distances = v.out_clip.origin ? v.out_clip.origin + y * v.out_clip.stride : nullptr;
   for (int x = begin; x < end; ++x) {
-    double distance = 0;
-    if (s.total[x] > 0) distance = rectify_pixel<kind, masked>(v, x, y, s.history + 4 * x);
-    if (distance > 0) ++counts.clipped;
-    if (v.out_clip.origin) v.out_clip.origin[y * v.out_clip.stride + x] = float(distance);
+    float* distance = distances ? distances + x : nullptr;
+    if (distance) *distance = 0;
+    if (s.total[x] > 0) counts.clipped += rectify_pixel<kind, r, masked>(v, x, y, s.history + 4 * x, distance);
   }
+}
+
+template <Box kind, int r>
+void rectify_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
+  bool valid = true;
+  for (int j = -r; j <= r; ++j) valid = valid && v.rows_valid[y + j];
+  // Where every neighbor is known to count, the test for it is left out; the result is the same.
+  const int begin = valid ? (r < v.width ? r : v.width) : v.width;
+  const int end = valid ? (v.width - r > begin ? v.width - r : begin) : v.width;
+  rectify_span<kind, r, true>(v, y, 0, begin, s, counts);
+  rectify_span<kind, r, false>(v, y, begin, end, s, counts);
+  rectify_span<kind, r, true>(v, y, end, v.width, s, counts);
 }
 
 template <Box kind>
 void rectify_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
-  bool valid = true;
-  for (int j = -v.radius; j <= v.radius; ++j) valid = valid && v.rows_valid[y + j];
-  // Where every neighbor is known to count, the test for it is left out; the result is the same.
-  const int begin = valid ? (v.radius < v.width ? v.radius : v.width) : v.width;
-  const int end = valid ? (v.width - v.radius > begin ? v.width - v.radius : begin) : v.width;
-  rectify_span<kind, true>(v, y, 0, begin, s, counts);
-  rectify_span<kind, false>(v, y, begin, end, s, counts);
-  rectify_span<kind, true>(v, y, end, v.width, s, counts);
+  if (v.radius == 1) return rectify_row<kind, 1>(v, y, s, counts);
+  if (v.radius == 2) return rectify_row<kind, 2>(v, y, s, counts);
+  rectify_row<kind, 3>(v, y, s, counts);
 }
 
 void rectify(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
@@ -54,9 +65,12 @@ void rectify(const AccumulateView& v, int y, const RowScratch& s, RowCounts& cou
       if (v.out_clip.origin)
         for (int x = 0; x < v.width; ++x) v.out_clip.origin[y * v.out_clip.stride + x] = 0;
       return;
-    case Box::minmax: return rectify_row<Box::minmax>(v, y, s, counts);
-    case Box::variance: return rectify_row<Box::variance>(v, y, s, counts);
-    case Box::variance_minmax: return rectify_row<Box::variance_minmax>(v, y, s, counts);
+    case Box::minmax:
+      return rectify_row<Box::minmax>(v, y, s, counts);
+    case Box::variance:
+      return rectify_row<Box::variance>(v, y, s, counts);
+    case Box::variance_minmax:
+      return rectify_row<Box::variance_minmax>(v, y, s, counts);
   }
 }
 
@@ -73,7 +87,9 @@ void blend_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& c
   for (int x = 0; x < v.width; ++x) {
     const Float4 present = load(v.color.origin + y * v.color.stride + 4 * x);
     const bool has_present = weight[x] > 0, has_history = s.total[x] > 0;
-    const double w = !has_present ? 0.0 : v.sample_weight.origin ? double(v.sample_weight.origin[y * v.sample_weight.stride + x]) : 1.0;
+    const double w = !has_present             ? 0.0
+                     : v.sample_weight.origin ? double(v.sample_weight.origin[y * v.sample_weight.stride + x])
+                                              : 1.0;
     Float4 color = present;
     double a = 1, total = w, spread = has_present ? 1 : 0;
     if (has_history) {

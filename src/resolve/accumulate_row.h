@@ -21,19 +21,20 @@ struct PixelRows {
 struct AccumulateView {
   int width, height;
 
-  // The present. `weight` is 1 where the color is valid and 0 elsewhere, also in the border, which is at least `radius` wide.
+  // The present. `weight` is 1 where the color is valid and 0 elsewhere, also in the border, which is at least `radius`
+  // wide.
   PixelRows<const float> color;      // reconstructed present, what is blended in
   PixelRows<const float> neighbors;  // raw samples in the space of the box
   PixelRows<const float> weight;
-  PixelRows<const float> motion;     // two floats: previous position minus this one, pixels; NaN where unusable
-  PixelRows<const float> depth;      // null without the depth test
+  PixelRows<const float> motion;         // two floats: previous position minus this one, pixels; NaN where unusable
+  PixelRows<const float> depth;          // null without the depth test
   PixelRows<const float> sample_weight;  // null: 1 everywhere
-  const std::uint8_t* rows_valid;    // 1 for each row, `radius` more at both ends: every pixel of it valid
-  int radius;                        // of the neighborhood
+  const std::uint8_t* rows_valid;        // 1 for each row, `radius` more at both ends: every pixel of it valid
+  int radius;                            // of the neighborhood
 
   // The history; width 0 when there is none.
   int history_width, history_height;
-  double shift_x, shift_y;           // window corner of the present minus that of the history
+  double shift_x, shift_y;  // window corner of the present minus that of the history
   PixelRows<const float> history_color;
   PixelRows<const float> history_total;   // sum of sample weights so far, 0: no data
   PixelRows<const float> history_spread;  // sum of squared normalized weights
@@ -42,10 +43,10 @@ struct AccumulateView {
 
   // What goes out.
   PixelRows<float> out_color, out_total, out_spread;
-  PixelRows<float> out_clip, out_weight;       // null if not wanted
-  PixelRows<std::uint32_t> out_reject;         // null if not wanted
+  PixelRows<float> out_clip, out_weight;  // null if not wanted
+  PixelRows<std::uint32_t> out_reject;    // null if not wanted
   std::uint8_t* out_rows_valid;
-  std::uint32_t restart_bit;                   // what to note where there is no history at all
+  std::uint32_t restart_bit;  // what to note where there is no history at all
 
   // Choices.
   HistoryFilter filter;
@@ -68,8 +69,8 @@ struct RowCounts {
 
 /// Working space of one row: width pixels of four floats, and one flag a pixel.
 struct RowScratch {
-  float* history;         // fetched history color
-  float* total;           // its weight sum; 0 where there is none
+  float* history;  // fetched history color
+  float* total;    // its weight sum; 0 where there is none
   float* spread;
   std::uint32_t* reject;
 };

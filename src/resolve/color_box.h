@@ -22,7 +22,7 @@ struct WindowStatistics {
 /// Gathers the (2r+1)^2 neighbors, shifted by the centre so that nothing cancels (relative error about N^2 u whatever
 /// the data), in double so that squares neither over- nor underflow. Pixels of weight 0 do not count; with
 /// `masked` false the caller knows that there are none.
-template <bool with_moments, bool with_extremes, bool masked>
+template <int r, bool with_moments, bool with_extremes, bool masked>
 VARVE_INLINE WindowStatistics gather_window(const AccumulateView& v, int x, int y) {
   const std::ptrdiff_t stride = v.neighbors.stride;
   const float* centre = v.neighbors.origin + y * stride + 4 * x;
@@ -30,10 +30,11 @@ VARVE_INLINE WindowStatistics gather_window(const AccumulateView& v, int x, int 
   Double4 sum = splat(0.0), squares = splat(0.0);
   Float4 low = splat(__builtin_inff()), high = splat(-__builtin_inff());
   double n = 0;
-  const int r = v.radius;
+#pragma GCC unroll 7
   for (int j = -r; j <= r; ++j) {
     const float* row = centre + j * stride - 4 * r;
     const float* weight = v.weight.origin + (y + j) * v.weight.stride + x - r;
+#pragma GCC unroll 7
     for (int i = 0; i <= 2 * r; ++i) {
       const Float4 c = load(row + 4 * i);
       if (masked && !(weight[i] > 0)) continue;
@@ -59,19 +60,16 @@ VARVE_INLINE WindowStatistics gather_window(const AccumulateView& v, int x, int 
   return s;
 }
 
-VARVE_INLINE double square_root(double v) { return __builtin_sqrt(v); }
-
 /// The box of a window. It is widened by a millionth of the mean's size, so that a flat patch does not clip history
 /// by its rounding noise; the scale is common to the color channels, because chroma of a grey is 0.
-template <Box kind, bool masked>
+template <Box kind, int r, bool masked>
 VARVE_INLINE ColorBox color_box(const AccumulateView& v, int x, int y) {
   constexpr bool moments = kind != Box::minmax;
   constexpr bool extremes = kind != Box::variance;
-  const WindowStatistics s = gather_window<moments, extremes, masked>(v, x, y);
+  const WindowStatistics s = gather_window<r, moments, extremes, masked>(v, x, y);
   ColorBox box{s.low, s.high, s.mean};
   if constexpr (moments) {
-    Double4 sigma;
-    for (int k = 0; k < 4; ++k) sigma[k] = square_root(biggest(s.m2[k] / s.n, 0.0));
+    const Double4 sigma = square_root(greatest(s.m2 / s.n, splat(0.0)));
     const Double4 low = s.mean - sigma * v.gamma, high = s.mean + sigma * v.gamma;
     box.low = extremes ? greatest(low, s.low) : low;
     box.high = extremes ? least(high, s.high) : high;

@@ -22,14 +22,8 @@ VARVE_INLINE Axis axis_at(double position) {
 
 /// Catmull-Rom weights (Keys, a = -1/2) of the pixels base-1 .. base+2.
 VARVE_INLINE Float4 catmull_rom_weights(float f) {
-  return Float4{f * (-0.5f + f * (1.0f - 0.5f * f)), 1.0f + f * f * (-2.5f + 1.5f * f), f * (0.5f + f * (2.0f - 1.5f * f)),
-                f * f * (-0.5f + 0.5f * f)};
-}
-
-/// Four pixels of a row, weighed. Differences to the nearest tap are summed, not the taps: a constant stays that constant.
-VARVE_INLINE Float4 weigh4(const float* p, Float4 w, Float4 nearest, float scale) {
-  return (load(p) * scale - nearest) * w[0] + (load(p + 4) * scale - nearest) * w[1] +
-         (load(p + 8) * scale - nearest) * w[2] + (load(p + 12) * scale - nearest) * w[3];
+  return Float4{f * (-0.5f + f * (1.0f - 0.5f * f)), 1.0f + f * f * (-2.5f + 1.5f * f),
+                f * (0.5f + f * (2.0f - 1.5f * f)), f * f * (-0.5f + 0.5f * f)};
 }
 
 /// The same by three taps, the middle one a linear blend of two pixels (the form GPUs use: 9 fetches for 16 pixels).
@@ -43,71 +37,90 @@ struct Taps {
   Axis x, y;
   const float* corner;  // pixel (x.base, y.base)
   std::ptrdiff_t stride;
-  float scale;  // 1, or a power of two below it where the sums would overflow
 };
 
-VARVE_INLINE Float4 nearest_tap(const Taps& t) {
-  return load(t.corner + (t.y.fraction < 0.5f ? 0 : t.stride) + (t.x.fraction < 0.5f ? 0 : 4)) * t.scale;
+/// A history pixel; a power of two smaller where sums of the values themselves would overflow.
+template <bool scaled>
+VARVE_INLINE Float4 tap(const float* p) {
+  return scaled ? load(p) * 0.0625f : load(p);
 }
 
+/// Four pixels of a row, weighed. Differences to the nearest tap are summed, not the taps: a constant stays that
+/// constant.
+template <bool scaled>
+VARVE_INLINE Float4 weigh4(const float* p, Float4 w, Float4 nearest) {
+  return (tap<scaled>(p) - nearest) * w[0] + (tap<scaled>(p + 4) - nearest) * w[1] +
+         (tap<scaled>(p + 8) - nearest) * w[2] + (tap<scaled>(p + 12) - nearest) * w[3];
+}
+
+template <bool scaled>
+VARVE_INLINE Float4 nearest_tap(const Taps& t) {
+  return tap<scaled>(t.corner + (t.y.fraction < 0.5f ? 0 : t.stride) + (t.x.fraction < 0.5f ? 0 : 4));
+}
+
+template <bool scaled>
 VARVE_INLINE Float4 bilinear(const Taps& t) {
-  const Float4 nearest = nearest_tap(t);
-  const Float4 a = load(t.corner) * t.scale - nearest, b = load(t.corner + 4) * t.scale - nearest;
-  const Float4 c = load(t.corner + t.stride) * t.scale - nearest, d = load(t.corner + t.stride + 4) * t.scale - nearest;
+  const Float4 nearest = nearest_tap<scaled>(t);
+  const Float4 a = tap<scaled>(t.corner) - nearest, b = tap<scaled>(t.corner + 4) - nearest;
+  const Float4 c = tap<scaled>(t.corner + t.stride) - nearest, d = tap<scaled>(t.corner + t.stride + 4) - nearest;
   const Float4 top = a + (b - a) * t.x.fraction, bottom = c + (d - c) * t.x.fraction;
   return nearest + (top + (bottom - top) * t.y.fraction);
 }
 
+template <bool scaled>
 VARVE_INLINE Float4 catmull_rom16(const Taps& t) {
   const Float4 wx = catmull_rom_weights(t.x.fraction), wy = catmull_rom_weights(t.y.fraction);
-  const Float4 nearest = nearest_tap(t);
+  const Float4 nearest = nearest_tap<scaled>(t);
   const float* p = t.corner - t.stride - 4;
-  Float4 sum = weigh4(p, wx, nearest, t.scale) * wy[0];
-  for (int j = 1; j < 4; ++j) sum += weigh4(p + j * t.stride, wx, nearest, t.scale) * wy[j];
+  Float4 sum = weigh4<scaled>(p, wx, nearest) * wy[0];
+  for (int j = 1; j < 4; ++j) sum += weigh4<scaled>(p + j * t.stride, wx, nearest) * wy[j];
   return nearest + sum;
 }
 
+template <bool scaled>
 VARVE_INLINE Float4 catmull_rom9(const Taps& t) {
   const Float4 wx = catmull_rom_weights(t.x.fraction), wy = catmull_rom_weights(t.y.fraction);
-  const Float4 nearest = nearest_tap(t);
+  const Float4 nearest = nearest_tap<scaled>(t);
   Float4 row[4];
   for (int j = 0; j < 4; ++j) {
     const float* p = t.corner + (j - 1) * t.stride - 4;
-    row[j] = weigh3(load(p) * t.scale - nearest, load(p + 4) * t.scale - nearest, load(p + 8) * t.scale - nearest,
-                    load(p + 12) * t.scale - nearest, wx);
+    row[j] = weigh3(tap<scaled>(p) - nearest, tap<scaled>(p + 4) - nearest, tap<scaled>(p + 8) - nearest,
+                    tap<scaled>(p + 12) - nearest, wx);
   }
   return nearest + weigh3(row[0], row[1], row[2], row[3], wy);
 }
 
 /// Without the four corners, renormalized by what is left (Jimenez; unnormalized it darkens by 1.6 % a pass).
+template <bool scaled>
 VARVE_INLINE Float4 catmull_rom5(const Taps& t) {
   const Float4 wx = catmull_rom_weights(t.x.fraction), wy = catmull_rom_weights(t.y.fraction);
   const Float4 inner{0.0f, wx[1], wx[2], 0.0f};
-  const Float4 nearest = nearest_tap(t);
+  const Float4 nearest = nearest_tap<scaled>(t);
   const float* p = t.corner - t.stride - 4;
-  const Float4 sum = weigh4(p, inner, nearest, t.scale) * wy[0] + weigh4(p + t.stride, wx, nearest, t.scale) * wy[1] +
-                     weigh4(p + 2 * t.stride, wx, nearest, t.scale) * wy[2] +
-                     weigh4(p + 3 * t.stride, inner, nearest, t.scale) * wy[3];
+  const Float4 sum = weigh4<scaled>(p, inner, nearest) * wy[0] + weigh4<scaled>(p + t.stride, wx, nearest) * wy[1] +
+                     weigh4<scaled>(p + 2 * t.stride, wx, nearest) * wy[2] +
+                     weigh4<scaled>(p + 3 * t.stride, inner, nearest) * wy[3];
   const float left = 1.0f - (wx[0] + wx[3]) * (wy[0] + wy[3]);
   return nearest + sum / left;
 }
 
 /// Between the least and the greatest of the four nearest pixels: no overshoot next to highlights.
+template <bool scaled>
 VARVE_INLINE Float4 held_by_nearest4(const Taps& t, Float4 v) {
-  const Float4 a = load(t.corner) * t.scale, b = load(t.corner + 4) * t.scale;
-  const Float4 c = load(t.corner + t.stride) * t.scale, d = load(t.corner + t.stride + 4) * t.scale;
+  const Float4 a = tap<scaled>(t.corner), b = tap<scaled>(t.corner + 4);
+  const Float4 c = tap<scaled>(t.corner + t.stride), d = tap<scaled>(t.corner + t.stride + 4);
   const Float4 low = least(least(a, b), least(c, d)), high = greatest(greatest(a, b), greatest(c, d));
   return least(greatest(v, low), high);
 }
 
-template <HistoryFilter filter>
+template <HistoryFilter filter, bool scaled>
 VARVE_INLINE Float4 filter_history(const Taps& taps, bool dering) {
-  if constexpr (filter == HistoryFilter::bilinear) return bilinear(taps);
+  if constexpr (filter == HistoryFilter::bilinear) return bilinear<scaled>(taps);
   Float4 v;
-  if constexpr (filter == HistoryFilter::catmull_rom) v = catmull_rom16(taps);
-  if constexpr (filter == HistoryFilter::catmull_rom9) v = catmull_rom9(taps);
-  if constexpr (filter == HistoryFilter::catmull_rom5) v = catmull_rom5(taps);
-  const Float4 held = held_by_nearest4(taps, v);
+  if constexpr (filter == HistoryFilter::catmull_rom) v = catmull_rom16<scaled>(taps);
+  if constexpr (filter == HistoryFilter::catmull_rom9) v = catmull_rom9<scaled>(taps);
+  if constexpr (filter == HistoryFilter::catmull_rom5) v = catmull_rom5<scaled>(taps);
+  const Float4 held = held_by_nearest4<scaled>(taps, v);
   if (dering) return held;
   return Float4{v[0], v[1], v[2], held[3]};  // coverage never overshoots
 }
@@ -139,7 +152,8 @@ VARVE_INLINE bool same_depth(float a, float b, double tolerance) {
       const bool inside = x >= 0 && y >= 0 && x < v.history_width && y < v.history_height;
       const float total = inside ? v.history_total.origin[y * v.history_total.stride + x] : 0.0f;
       bool passed = total > 0;
-      if (passed && depth && !same_depth(v.history_depth.origin[y * v.history_depth.stride + x], *depth, v.depth_tolerance)) {
+      if (passed && depth &&
+          !same_depth(v.history_depth.origin[y * v.history_depth.stride + x], *depth, v.depth_tolerance)) {
         passed = false;
         r.depth_failed = true;
       }
@@ -193,13 +207,13 @@ VARVE_INLINE void fetch_pixel(const AccumulateView& v, int x, int y, const RowSc
       return;
     }
   }
-  Taps taps{ax, ay, v.history_color.origin + ay.base * v.history_color.stride + 4 * ax.base, v.history_color.stride, 1.0f};
-  Float4 color = filter_history<filter>(taps, v.dering);
+  const Taps taps{ax, ay, v.history_color.origin + ay.base * v.history_color.stride + 4 * ax.base,
+                  v.history_color.stride};
+  Float4 color = filter_history<filter, false>(taps, v.dering);
   if (__builtin_expect(!finite(color), 0)) {
     // Sums of values near the end of the float range: once more at 1/16, held to what the pixels hold.
-    taps.scale = 0.0625f;
     const Float4 limit = splat(3.40282347e38f * 0.0625f);
-    color = least(greatest(filter_history<filter>(taps, v.dering), -limit), limit) * 16.0f;
+    color = least(greatest(filter_history<filter, true>(taps, v.dering), -limit), limit) * 16.0f;
   }
   const float* total = v.history_total.origin + ay.base * v.history_total.stride + ax.base;
   const float* spread = v.history_spread.origin + (ay.base + (ay.fraction >= 0.5f)) * v.history_spread.stride + ax.base;

@@ -29,15 +29,32 @@ VARVE_INLINE Float4 greatest(Float4 a, Float4 b) { return a > b ? a : b; }
 VARVE_INLINE Double4 least(Double4 a, Double4 b) { return a < b ? a : b; }
 VARVE_INLINE Double4 greatest(Double4 a, Double4 b) { return a > b ? a : b; }
 VARVE_INLINE Double4 magnitude(Double4 v) { return v < 0.0 ? -v : v; }
+VARVE_INLINE Double4 square_root(Double4 v) {
+#ifdef __AVX__
+  return __builtin_ia32_sqrtpd256(v);
+#else
+  return Double4{__builtin_sqrt(v[0]), __builtin_sqrt(v[1]), __builtin_sqrt(v[2]), __builtin_sqrt(v[3])};
+#endif
+}
 VARVE_INLINE double biggest(double a, double b) { return a > b ? a : b; }
 VARVE_INLINE double smallest(double a, double b) { return a < b ? a : b; }
 
-/// True when no lane is NaN or infinite.
+/// True when no lane is NaN or infinite: the difference to itself is then 0, else NaN.
 VARVE_INLINE bool finite(Float4 v) {
-  const Float4 zero = v - v;  // NaN in every lane that is not finite
-  return zero[0] == 0 && zero[1] == 0 && zero[2] == 0 && zero[3] == 0;
+  const Float4 zero = v - v;
+  return (zero[0] + zero[1]) + (zero[2] + zero[3]) == 0;
 }
-VARVE_INLINE bool all_true(Mask4 m) { return (m[0] & m[1] & m[2] & m[3]) != 0; }
+VARVE_INLINE bool all_true(Mask4 m) {
+#if defined(__AVX__)
+  return __builtin_ia32_movmskpd256(Double4(m)) == 15;
+#else
+  return (m[0] & m[1] & m[2] & m[3]) != 0;
+#endif
+}
+VARVE_INLINE double least_lane(Double4 v) {
+  const double a = v[0] < v[1] ? v[0] : v[1], b = v[2] < v[3] ? v[2] : v[3];
+  return a < b ? a : b;
+}
 
 /// R G B A to Y Co Cg A: an orthogonal-ish rotation with powers of two, so scaling the light scales it exactly.
 VARVE_INLINE Float4 ycocg_from_rgb(Float4 c) {

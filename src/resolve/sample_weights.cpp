@@ -14,7 +14,8 @@ constexpr double kBlackmanHarrisWidth = 3.3;
 double blackman_harris(double x) {
   const double t = 2 * std::numbers::pi * x / kBlackmanHarrisWidth;
   const double a0 = 0.35875;
-  return (a0 + 0.48829 * std::cos(t) + 0.14128 * std::cos(2 * t) + 0.01168 * std::cos(3 * t)) / (a0 * kBlackmanHarrisWidth);
+  return (a0 + 0.48829 * std::cos(t) + 0.14128 * std::cos(2 * t) + 0.01168 * std::cos(3 * t)) /
+         (a0 * kBlackmanHarrisWidth);
 }
 
 /// Mitchell and Netravali 1988, B = C = 1/3.
@@ -61,11 +62,16 @@ Sum weigh(const Present& p, int x, int y, const AxisWeights& wx, const AxisWeigh
 
 double reconstruction_radius(SampleFilter filter) {
   switch (filter) {
-    case SampleFilter::none: return 0.5;
-    case SampleFilter::tent: return 1;
-    case SampleFilter::gaussian: return 1.5;
-    case SampleFilter::blackman_harris: return kBlackmanHarrisWidth / 2;
-    case SampleFilter::mitchell: return 2;
+    case SampleFilter::none:
+      return 0.5;
+    case SampleFilter::tent:
+      return 1;
+    case SampleFilter::gaussian:
+      return 1.5;
+    case SampleFilter::blackman_harris:
+      return kBlackmanHarrisWidth / 2;
+    case SampleFilter::mitchell:
+      return 2;
   }
   return 0;
 }
@@ -73,14 +79,18 @@ double reconstruction_radius(SampleFilter filter) {
 double reconstruction_kernel(SampleFilter filter, double x) {
   if (!(std::abs(x) < reconstruction_radius(filter))) return 0;
   switch (filter) {
-    case SampleFilter::none: return 1;
-    case SampleFilter::tent: return 1 - std::abs(x);
+    case SampleFilter::none:
+      return 1;
+    case SampleFilter::tent:
+      return 1 - std::abs(x);
     case SampleFilter::gaussian: {
       const double t = x / kGaussianSigma;
       return std::exp(-0.5 * t * t) / (kGaussianSigma * std::sqrt(2 * std::numbers::pi));
     }
-    case SampleFilter::blackman_harris: return blackman_harris(x);
-    case SampleFilter::mitchell: return mitchell(x);
+    case SampleFilter::blackman_harris:
+      return blackman_harris(x);
+    case SampleFilter::mitchell:
+      return mitchell(x);
   }
   return 0;
 }

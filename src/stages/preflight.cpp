@@ -98,7 +98,8 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
     const MotionEncoding& e = subject.backward ? subject.backward_encoding : subject.forward_encoding;
     char encoding[160];
     std::snprintf(encoding, sizeof encoding, " vectors:%s=%s,%.17g,%.17g,%.17g,%g,%g,%d,%d", subject.layer.c_str(),
-                  subject.convention.c_str(), e.bias, e.scale, e.shutter, e.sign_x, e.sign_y, int(e.unit), int(e.direction));
+                  subject.convention.c_str(), e.bias, e.scale, e.shutter, e.sign_x, e.sign_y, int(e.unit),
+                  int(e.direction));
     text += encoding;
   }
   for (const std::string& aov : job.request.aovs) text += " aov=" + aov;
@@ -119,6 +120,18 @@ std::string hash_of(const std::string& text) {
   return hex;
 }
 
+void check_vectors(const ResolveJob& job, const SequenceInfo& info) {
+  if (info.frames.size() < 2 || job.roles.convention == "none") return;
+  for (const Subject& subject : info.first.subjects)
+    if (!subject.backward && !subject.forward)
+      throw Failure(
+          ExitCode::inconsistent,
+          "'" + info.first.files.front().path + "' (frame " + std::to_string(info.first.frame) +
+              ") has no motion vectors for " + (subject.layer.empty() ? "its color" : "layer '" + subject.layer + "'") +
+              "; render them, name them with --map motion.x=CHANNEL or --motion-file, or say --convention none to "
+              "resolve as if nothing moved");
+}
+
 void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& schedule) {
   std::set<std::filesystem::path> inputs;
   std::size_t writes = 0;
@@ -130,7 +143,8 @@ void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& sch
   const auto check = [&](const SequencePattern& pattern, const char* option, std::set<std::filesystem::path>& outputs) {
     if (writes > 1 && !pattern.has_frame())
       throw Failure(ExitCode::usage, std::string(option) + " '" + pattern.text() + "' names one file for " +
-                                         std::to_string(writes) + " frames; put the frame number in, as in out.####.exr");
+                                         std::to_string(writes) +
+                                         " frames; put the frame number in, as in out.####.exr");
     for (const ScheduledFrame& s : schedule) {
       if (!s.write) continue;
       const std::string path = pattern.path(s.frame);

@@ -1,6 +1,8 @@
 #include "stages/previews.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <functional>
 
 #include "exr/pictures.h"
 
@@ -18,23 +20,28 @@ std::string file_name(std::string name) {
 
 void write_previews(const std::string& folder, int frame, const std::vector<ResolvedSubject>& subjects,
                     const std::vector<const Aov*>& aovs, const DisplayTransform* display, Workers& workers) {
-  char number[16];
-  std::snprintf(number, sizeof number, frame < 0 ? ".%05d.png" : ".%04d.png", frame);
+  char digits[16];
+  std::snprintf(digits, sizeof digits, frame < 0 ? ".%05d.png" : ".%04d.png", frame);
+  const std::string number = digits;
+  std::vector<std::function<void()>> pictures;  // encoding a PNG takes longer than resolving: side by side
   for (const ResolvedSubject& resolved : subjects) {
     std::string prefix = folder + "/";
     if (subjects.size() > 1 && !resolved.subject->layer.empty()) prefix += file_name(resolved.subject->layer) + ".";
     if (subjects.size() > 1 && !resolved.subject->view.empty()) prefix += file_name(resolved.subject->view) + ".";
-    write_color_png(prefix + "color" + number, resolved.accumulated->history.color, display);
-    for (const Aov* aov : aovs) {
-      const int components = aov->components.empty() ? 1 : int(aov->components.size());
-      for (int k = 0; k < components; ++k) {
+    pictures.emplace_back(
+        [=, &resolved] { write_color_png(prefix + "color" + number, resolved.accumulated->history.color, display); });
+    for (const Aov* aov : aovs)
+      for (int k = 0; k < std::max(1, int(aov->components.size())); ++k) {
         std::string name = prefix + std::string(aov->name);
-        if (components > 1) name += std::string(".") + aov->components[std::size_t(k)];
-        write_map_png(name + number, diagnostic_plane(*aov, k, resolved, workers), std::string(aov->colormap),
-                      aov->preview_low, aov->preview_high);
+        if (aov->components.size() > 1) name += std::string(".") + aov->components[std::size_t(k)];
+        pictures.emplace_back([=, &resolved] {
+          Workers alone(1);
+          write_map_png(name + number, diagnostic_plane(*aov, k, resolved, alone), std::string(aov->colormap),
+                        aov->preview_low, aov->preview_high);
+        });
       }
-    }
   }
+  workers.for_each(pictures.size(), [&](std::size_t i, int) { pictures[i](); });
 }
 
 }  // namespace varve

@@ -23,7 +23,8 @@ Plane<float> read_plane(const RawPlane& raw, const Window& window, float outside
       return;
     }
     std::fill(row, row + (common.x0 - window.x0), outside);
-    const std::byte* from = raw.row(y - raw.window.y0) + std::size_t(common.x0 - raw.window.x0) * bytes_per_pixel(raw.type);
+    const std::byte* from =
+        raw.row(y - raw.window.y0) + std::size_t(common.x0 - raw.window.x0) * bytes_per_pixel(raw.type);
     to_float(raw.type, from, row + (common.x0 - window.x0), std::size_t(common.width()));
     std::fill(row + (common.x1 - window.x0), row + window.width(), outside);
   });

@@ -23,12 +23,13 @@ struct ForwardMemory {
 
 struct ReadOptions {
   MotionParameters motion;
-  bool use_depth = false;   ///< depth is decoded and kept with the present
+  bool use_depth = false;  ///< depth is decoded and kept with the present
   bool use_motion = false;
 };
 
-/// Converts one subject. `into_working_space` may be null. `memory` holds the previous frame's forward vectors where they are
-/// needed, and is replaced by this frame's; clear it at a restart. `vectors_bad` counts vectors that cannot be used.
+/// Converts one subject. `into_working_space` may be null. `memory` holds the previous frame's forward vectors where
+/// they are needed, and is replaced by this frame's; clear it at a restart. `vectors_bad` counts vectors that cannot be
+/// used.
 Present read_present(const Subject& subject, const FileSet& pixels, const Window& window, const Window& display_window,
                      const ReadOptions& options, const ColorConversion* into_working_space, ForwardMemory& memory,
                      std::size_t& vectors_bad, Workers& workers);

@@ -1,6 +1,7 @@
 #include "stages/write_resolved.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstring>
 #include <limits>
@@ -12,42 +13,31 @@
 namespace varve {
 namespace {
 
-/// Float rows into a stored plane of half or float; `value(x)` gives pixel x of the window's row.
-template <class RowFiller>
-RawPlane store_plane(PixelType type, const Window& window, std::atomic<std::size_t>& overflows, Workers& workers,
-                     const RowFiller& fill_row) {
-  RawPlane plane = make_raw_plane(type, window);
-  workers.for_rows(window.y0, window.y1, [&](int y) {
-    std::byte* to = plane.row(y - window.y0);
-    if (type == PixelType::float32) {
-      fill_row(y, reinterpret_cast<float*>(to));
-      return;
-    }
-    std::vector<float> row(static_cast<std::size_t>(window.width()));
-    fill_row(y, row.data());
-    if (type == PixelType::uint32) {
-      auto* integers = reinterpret_cast<std::uint32_t*>(to);
-      for (int x = 0; x < window.width(); ++x) integers[x] = std::uint32_t(row[std::size_t(x)]);
-    } else {
-      overflows += to_half_clamped(row.data(), reinterpret_cast<std::uint16_t*>(to), row.size());
-    }
-  });
-  return plane;
+/// A row of floats in a stored type; returns how many values had to be held at the ends of half.
+std::size_t store_row(PixelType type, const float* from, std::byte* to, int width) {
+  const auto count = static_cast<std::size_t>(width);
+  if (type == PixelType::float16) return to_half_clamped(from, reinterpret_cast<std::uint16_t*>(to), count);
+  if (type == PixelType::float32) {
+    std::memcpy(to, from, sizeof(float) * count);
+    return 0;
+  }
+  auto* integers = reinterpret_cast<std::uint32_t*>(to);
+  for (std::size_t x = 0; x < count; ++x) integers[x] = std::uint32_t(std::clamp(double(from[x]), 0.0, 4294967295.0));
+  return 0;
 }
 
 void add_diagnostics(FileOutput& out, OutputPart& part, const ResolvedSubject& resolved,
                      const std::vector<const Aov*>& aovs, bool several_layers, Workers& workers) {
   const Window& window = resolved.present->color.window();
-  std::atomic<std::size_t> none = 0;
   for (const Aov* aov : aovs)
     for (int k = 0; k < std::max(1, int(aov->components.size())); ++k) {
       const Plane<float> values = diagnostic_plane(*aov, k, resolved, workers);
-      out.planes.push_back(store_plane(aov->type, window, none, workers, [&](int y, float* row) {
-        std::memcpy(row, values.row(y), sizeof(float) * std::size_t(window.width()));
-      }));
+      RawPlane& plane = out.planes.emplace_back(make_raw_plane(aov->type, window));
+      workers.for_rows(window.y0, window.y1,
+                       [&](int y) { store_row(aov->type, values.row(y), plane.row(y - window.y0), window.width()); });
       const std::string_view component = aov->components.empty() ? "" : aov->components.substr(std::size_t(k), 1);
-      part.channels.push_back({{aov_channel(*aov, *resolved.subject, several_layers, component), aov->type, 1, 1, false},
-                               &out.planes.back()});
+      part.channels.push_back(
+          {{aov_channel(*aov, *resolved.subject, several_layers, component), aov->type, 1, 1, false}, &plane});
     }
 }
 
@@ -75,6 +65,42 @@ Plane<glm::vec4> color_to_write(const ResolvedSubject& resolved, const ColorConv
   return color;
 }
 
+/// The resolved color in the stored types of its channels.
+void add_color(FileOutput& out, OutputPart& to, const Part& part, const ResolvedSubject& resolved,
+               const ColorConversion* conversion, Workers& workers) {
+  const Plane<glm::vec4> converted = color_to_write(resolved, conversion, workers);
+  const Plane<glm::vec4>& color = converted.empty() ? resolved.accumulated->history.color : converted;
+  const Window& window = color.window();
+  std::array<RawPlane*, 4> planes{};
+  for (std::size_t k = 0; k < 4; ++k)
+    if (const auto& ref = resolved.subject->color[k]) {
+      const Channel& channel = part.channels[std::size_t(ref->channel)];
+      planes[k] = &out.planes.emplace_back(make_raw_plane(channel.type, window));
+      to.channels.push_back({channel, planes[k]});
+    }
+  std::atomic<std::size_t> overflows = 0;
+  workers.for_rows(window.y0, window.y1, [&](int y) {
+    const glm::vec4* from = color.row(y);
+    std::vector<float> row(static_cast<std::size_t>(window.width()));
+    std::size_t held = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (!planes[k]) continue;
+      for (int x = 0; x < window.width(); ++x) row[std::size_t(x)] = from[x][int(k)];
+      held += store_row(planes[k]->type, row.data(), planes[k]->row(y - window.y0), window.width());
+    }
+    overflows += held;
+  });
+  out.half_overflows += overflows;
+}
+
+/// The part's other channels as they were, unless one of that name is written already.
+void add_kept(OutputPart& to, const Part& part, const std::vector<RawPlane>& pixels) {
+  std::set<std::string> taken;
+  for (const OutputChannel& channel : to.channels) taken.insert(channel.channel.name);
+  for (std::size_t c = 0; c < part.channels.size(); ++c)
+    if (!taken.contains(part.channels[c].name)) to.channels.push_back({part.channels[c], &pixels[c]});
+}
+
 }  // namespace
 
 std::string aov_channel(const Aov& aov, const Subject& subject, bool several, std::string_view component) {
@@ -86,46 +112,25 @@ std::string aov_channel(const Aov& aov, const Subject& subject, bool several, st
   return name;
 }
 
-FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels, const std::vector<ResolvedSubject>& subjects,
-                          const std::vector<const Aov*>& aovs, bool keep, const ColorConversion* out_of_working_space,
-                          Workers& workers) {
+FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
+                          const std::vector<ResolvedSubject>& subjects, const std::vector<const Aov*>& aovs, bool keep,
+                          const ColorConversion* out_of_working_space, Workers& workers) {
   FileOutput out;
-  std::atomic<std::size_t> overflows = 0;
   const bool several = several_layers(subjects);
   for (int p = 0; p < int(source.parts.size()); ++p) {
     const Part& part = source.parts[std::size_t(p)];
     OutputPart to;
     to.source_part = p;
-    std::set<int> replaced;
     for (const ResolvedSubject& resolved : subjects) {
-      const Plane<glm::vec4> converted = color_to_write(resolved, out_of_working_space, workers);
-      const Plane<glm::vec4>& color = converted.empty() ? resolved.accumulated->history.color : converted;
-      bool here = false;
-      for (std::size_t k = 0; k < 4; ++k) {
-        const auto& ref = resolved.subject->color[k];
-        if (!ref || ref->part != p) continue;
-        const Channel& channel = part.channels[std::size_t(ref->channel)];
-        const Window& window = part.data_window;
-        out.planes.push_back(store_plane(channel.type, window, overflows, workers, [&](int y, float* row) {
-          const glm::vec4* from = color.row(y);
-          for (int x = 0; x < window.width(); ++x) row[x] = from[x][int(k)];
-        }));
-        to.channels.push_back({channel, &out.planes.back()});
-        replaced.insert(ref->channel);
-        here = true;
-      }
-      if (here) add_diagnostics(out, to, resolved, aovs, several, workers);
+      if (part_of(*resolved.subject) != p) continue;
+      add_color(out, to, part, resolved, out_of_working_space, workers);
+      add_diagnostics(out, to, resolved, aovs, several, workers);
     }
-    if (replaced.empty()) {
-      if (!keep) continue;
-      to.copy_chunks = true;
-    } else if (keep) {
-      for (int c = 0; c < int(part.channels.size()); ++c)
-        if (!replaced.contains(c)) to.channels.push_back({part.channels[std::size_t(c)], &pixels[{0, p, c}]});
-    }
+    to.copy_chunks = to.channels.empty();
+    if (to.copy_chunks && !keep) continue;
+    if (!to.copy_chunks && keep) add_kept(to, part, pixels.planes[std::size_t(p)]);
     out.parts.push_back(std::move(to));
   }
-  out.half_overflows = overflows;
   return out;
 }
 

@@ -28,21 +28,22 @@ struct FileOutput {
   std::size_t half_overflows = 0;  ///< finite values beyond +-65504 that had to be held there
 };
 
-/// Channel of a diagnostic plane: "varve.count", with the layer where several are resolved and the view where it is not the
-/// default one: "varve.fg.count", "varve.left.motion.x".
+/// Channel of a diagnostic plane: "varve.count", with the layer where several are resolved and the view where it is not
+/// the default one: "varve.fg.count", "varve.left.motion.x".
 std::string aov_channel(const Aov& aov, const Subject& subject, bool several_layers, std::string_view component);
 
-/// The source's parts with the resolved color in place. With `keep`, other channels stand beside it and parts without a subject
-/// are copied; without, only resolved channels are written. `aovs` are added to each subject's part.
-FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels, const std::vector<ResolvedSubject>& subjects,
-                          const std::vector<const Aov*>& aovs, bool keep, const ColorConversion* out_of_working_space,
-                          Workers& workers);
+/// The source's parts with the resolved color in place. With `keep`, other channels stand beside it and parts without a
+/// subject are copied; without, only resolved channels are written. `aovs` are added to each subject's part.
+FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
+                          const std::vector<ResolvedSubject>& subjects, const std::vector<const Aov*>& aovs, bool keep,
+                          const ColorConversion* out_of_working_space, Workers& workers);
 
 /// Only the diagnostic planes, in the parts of their subjects.
 FileOutput diagnostic_parts(const FileHeader& source, const std::vector<ResolvedSubject>& subjects,
                             const std::vector<const Aov*>& aovs, Workers& workers);
 
-/// One component of a diagnostic plane as float, for pictures and for the writer. `reject` is a sum of bits, exact in float.
+/// One component of a diagnostic plane as float, for pictures and for the writer. `reject` is a sum of bits, exact in
+/// float.
 Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubject& resolved, Workers& workers);
 
 /// Which planes accumulate() must fill for these.

@@ -128,6 +128,16 @@ TEST_F(Resolve, DiagnosticsInsideAndApart) {
   expect_only_whole_files();
 }
 
+TEST_F(Resolve, WithoutVectorsOnlyWhenToldSo) {
+  write_small_sequence(folder.path(), {.with_vectors = false});
+  const Outcome refused = run();
+  EXPECT_EQ(refused.code, 4);
+  EXPECT_NE(refused.err.find("no motion vectors"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("--convention none"), std::string::npos) << refused.err;
+  EXPECT_TRUE(files_below(folder / "out").empty());
+  EXPECT_EQ(run({"--convention", "none"}).code, 0);
+}
+
 TEST_F(Resolve, ProgressStyles) {
   const Outcome json = run({"--progress", "json"});
   EXPECT_EQ(json.code, 0);
@@ -189,7 +199,6 @@ const std::vector<Damage>& damages() {
        {},
        3,
        "in.####.exr"},
-      {"no vectors", [](const Folder& f) { write_small_sequence(f.path(), {.with_vectors = false}); }, {}, 4, "vector"},
       {"no depth where it is needed",
        [](const Folder& f) { write_small_sequence(f.path(), {.with_depth = false}); },
        {"--disocclusion", "depth"},
@@ -215,7 +224,7 @@ const std::vector<Damage>& damages() {
       {"missing color config",
        nothing,
        {"--ocio", "missing.ocio", "--from-space", "a", "--to-space", "b"},
-       2,
+       3,
        "missing.ocio"},
       {"report in a folder that is not there", nothing, {"--report", "nowhere/report.json"}, 5, "nowhere"},
   };

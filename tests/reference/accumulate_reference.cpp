@@ -187,7 +187,8 @@ double rectify_color(Color& color, const Color& present, const BoxBounds& b, con
 }
 
 /// The present at a pixel centre: its own sample, or the weighted samples around (math, section 5).
-Color present_at(const Present& present, SampleFilter filter, std::optional<glm::dvec2> jitter, int x, int y, double& weight) {
+Color present_at(const Present& present, SampleFilter filter, std::optional<glm::dvec2> jitter, int x, int y,
+                 double& weight) {
   weight = present.valid.at(x, y) > 0 ? 1 : 0;
   const Color own = color_of(present.color.at(x, y));
   if (filter == SampleFilter::none || !jitter) return own;
@@ -197,7 +198,8 @@ Color present_at(const Present& present, SampleFilter filter, std::optional<glm:
     for (int j = y - 3; j <= y + 3; ++j)
       for (int i = x - 3; i <= x + 3; ++i) {
         if (!present.color.window().contains(i, j) || !(present.valid.at(i, j) > 0)) continue;
-        const double w = reconstruction_kernel(filter, i + jitter->x - x) * reconstruction_kernel(filter, j + jitter->y - y);
+        const double w =
+            reconstruction_kernel(filter, i + jitter->x - x) * reconstruction_kernel(filter, j + jitter->y - y);
         if (positive && w < 0) continue;
         total += w;
         for (std::size_t k = 0; k < 4; ++k) sum[k] += w * double(present.color.at(i, j)[int(k)]);
@@ -217,7 +219,8 @@ Color present_at(const Present& present, SampleFilter filter, std::optional<glm:
 }  // namespace
 
 Pixel accumulate_pixel(const Present& present, const History& previous, const RecursiveParameters& p,
-                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x, int y) {
+                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
+                       int y) {
   Pixel out;
   double w = 1;
   const Color now = present_at(present, p.sample_filter, jitter, x, y, w);

@@ -21,7 +21,8 @@ struct Pixel {
 
 /// What accumulate() must give at (x, y), display coordinates.
 Pixel accumulate_pixel(const Present& present, const History& previous, const RecursiveParameters& recursive,
-                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x, int y);
+                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
+                       int y);
 
 /// The vector a pixel follows, by looking at all nine.
 glm::vec2 dilated_motion(const Plane<glm::vec2>& motion, const Plane<float>& depth, Dilation dilation, int x, int y);

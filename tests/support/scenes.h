@@ -12,9 +12,9 @@ namespace varve::test {
 
 struct NoiseOptions {
   unsigned seed = 1;
-  double bad_share = 0;      ///< of pixels that are NaN or infinite
-  double motion = 3;         ///< px, largest part of a vector
-  double bad_motion = 0;     ///< share of NaN vectors
+  double bad_share = 0;   ///< of pixels that are NaN or infinite
+  double motion = 3;      ///< px, largest part of a vector
+  double bad_motion = 0;  ///< share of NaN vectors
   bool with_depth = false;
   float scale = 1;
 };
@@ -35,14 +35,17 @@ inline Present noise_present(const Window& w, const NoiseOptions& o, Workers& wo
       glm::vec4 c(base * (0.8f + 0.4f * unit(random)) * peak, base * (0.6f + 0.4f * unit(random)) * peak,
                   base * unit(random) * peak, edge ? 1.0f : unit(random));
       if (double(unit(random)) < o.bad_share)
-        c[int(unit(random) * 3.99f)] = unit(random) < 0.5f ? std::numeric_limits<float>::quiet_NaN() : std::numeric_limits<float>::infinity();
+        c[int(unit(random) * 3.99f)] =
+            unit(random) < 0.5f ? std::numeric_limits<float>::quiet_NaN() : std::numeric_limits<float>::infinity();
       p.color.at(x, y) = c;
       const float m = float(o.motion);
       glm::vec2 v((unit(random) * 2 - 1) * m, (unit(random) * 2 - 1) * m);
       if (unit(random) < 0.1f) v = glm::vec2(std::round(v.x), std::round(v.y));
       if (double(unit(random)) < o.bad_motion) v = glm::vec2(std::numeric_limits<float>::quiet_NaN());
       p.motion.at(x, y) = v;
-      if (o.with_depth) p.depth.at(x, y) = edge ? 5.0f + 0.1f * unit(random) : (unit(random) < 0.2f ? std::numeric_limits<float>::infinity() : 9.0f);
+      if (o.with_depth)
+        p.depth.at(x, y) =
+            edge ? 5.0f + 0.1f * unit(random) : (unit(random) < 0.2f ? std::numeric_limits<float>::infinity() : 9.0f);
     }
   sanitize(p, workers);
   return p;

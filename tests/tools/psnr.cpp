@@ -4,22 +4,16 @@
 // Layers are channel prefixes without the last dot ("" for bare R, G, B); "auto" finds the only one there is.
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "read_rgb.h"
+#include "psnr.h"
 
 namespace {
 
 using namespace varve::tools;
-
-struct Sums {
-  double tone = 0, linear = 0;
-  std::size_t values = 0, not_finite = 0;
-};
 
 std::string with_frame(const std::string& pattern, int frame) {
   const std::size_t first = pattern.find('#');
@@ -38,25 +32,6 @@ std::vector<int> frames_of(const std::string& text) {
   for (int f = first; f <= last; ++f) frames.push_back(f);
   return frames;
 }
-
-void add_squares(const Rgb& reference, const Rgb& test, Sums& sums) {
-  for (int c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < reference.planes[c].size(); ++i) {
-      const double r = std::max(0.0, double(reference.planes[c][i])), t = std::max(0.0, double(test.planes[c][i]));
-      ++sums.values;
-      if (!std::isfinite(test.planes[c][i])) {
-        ++sums.not_finite;  // the worst there is, so that it cannot improve a figure
-        sums.tone += 1;
-        sums.linear += 1;
-        continue;
-      }
-      const double tone = t / (1 + t) - r / (1 + r), linear = std::min(1.0, t) - std::min(1.0, r);
-      sums.tone += tone * tone;
-      sums.linear += linear * linear;
-    }
-}
-
-double decibels(double squares, std::size_t values) { return -10 * std::log10(squares / double(values)); }
 
 void print(const std::string& label, const Sums& s) {
   std::printf("%-12s tone %6.2f dB  linear %6.2f dB  not finite %zu\n", label.c_str(), decibels(s.tone, s.values),

@@ -1,7 +1,6 @@
 // The recursive accumulator: its slow twin, and the laws it obeys.
 #include "resolve/accumulate.h"
 
-
 #include <gtest/gtest.h>
 
 #include <cfloat>
@@ -97,7 +96,8 @@ std::vector<TwinCase> twin_cases() {
     c.noise.bad_share = 0.01;
     cases.push_back(c);
   }
-  for (const SampleFilter filter : {SampleFilter::tent, SampleFilter::gaussian, SampleFilter::blackman_harris, SampleFilter::mitchell}) {
+  for (const SampleFilter filter :
+       {SampleFilter::tent, SampleFilter::gaussian, SampleFilter::blackman_harris, SampleFilter::mitchell}) {
     TwinCase c{"samples", {}, {}, {}};
     c.recursive.sample_filter = filter;
     c.recursive.alpha_rule = seed % 2 ? AlphaRule::fixed : AlphaRule::mean;
@@ -135,7 +135,8 @@ TEST(Accumulate, BothProcessorsGiveTheSameBits) {
     const Window w{0, 0, 61, 37};
     const Present a = noise_present(w, c.noise, workers);
     const History h = next_history(a, {}, c.recursive, c.rectify, workers);
-    const Accumulated slow = accumulate(a, h, c.recursive, c.rectify, glm::dvec2(.2, .1), 1, kAll, workers, Isa::baseline);
+    const Accumulated slow =
+        accumulate(a, h, c.recursive, c.rectify, glm::dvec2(.2, .1), 1, kAll, workers, Isa::baseline);
     const Accumulated fast = accumulate(a, h, c.recursive, c.rectify, glm::dvec2(.2, .1), 1, kAll, workers, Isa::avx2);
     EXPECT_TRUE(same_bits(slow.history.color, fast.history.color)) << c.name;
     for (int y = 0; y < w.y1; ++y) {
@@ -170,7 +171,8 @@ TEST(Accumulate, ConstantInConstantOutExactly) {
       for (int frame = 0; frame < 5; ++frame) h = next_history(present, h, c.recursive, c.rectify, workers);
       for (int y = 0; y < w.y1; ++y)
         for (int x = 0; x < w.x1; ++x)
-          for (int k = 0; k < 4; ++k) ASSERT_EQ(h.color.at(x, y)[k], color[k]) << c.name << " " << value << " at " << x << "," << y;
+          for (int k = 0; k < 4; ++k)
+            ASSERT_EQ(h.color.at(x, y)[k], color[k]) << c.name << " " << value << " at " << x << "," << y;
     }
 }
 
@@ -293,7 +295,8 @@ TEST(Accumulate, ExtremeValuesStayFinite) {
 
 TEST(Accumulate, SmallestWindows) {
   Workers workers(3);
-  for (const Window w : {Window{0, 0, 0, 0}, Window{4, 4, 5, 5}, Window{0, 0, 1, 9}, Window{-2, 0, 7, 1}, Window{0, 0, 2, 2}})
+  for (const Window w :
+       {Window{0, 0, 0, 0}, Window{4, 4, 5, 5}, Window{0, 0, 1, 9}, Window{-2, 0, 7, 1}, Window{0, 0, 2, 2}})
     for (const TwinCase& c : twin_cases()) {
       if (w.empty()) {
         EXPECT_TRUE(accumulate(Present{}, {}, c.recursive, c.rectify, {}, 1, {}, workers).history.color.empty());
@@ -310,8 +313,8 @@ TEST(Accumulate, AtRestTheFetchIsTheHistoryItself) {
   Workers workers(1);
   const Window w{0, 0, 21, 15};
   const Present p = noise_present(w, {5, 0, 0, 0, false, 1}, workers);
-  for (const HistoryFilter filter :
-       {HistoryFilter::bilinear, HistoryFilter::catmull_rom, HistoryFilter::catmull_rom9, HistoryFilter::catmull_rom5}) {
+  for (const HistoryFilter filter : {HistoryFilter::bilinear, HistoryFilter::catmull_rom, HistoryFilter::catmull_rom9,
+                                     HistoryFilter::catmull_rom5}) {
     RecursiveParameters recursive;
     recursive.history_filter = filter;
     RectifyParameters none;
@@ -368,7 +371,8 @@ TEST(Accumulate, ClippingLeavesNothingOutsideTheBox) {
       rectify.rule = rule;
       rectify.space = space;
       const History black = next_history(flat_present(w, glm::vec4(0, 0, 0, 1), workers), {}, {}, rectify, workers);
-      const Accumulated a = accumulate(flat_present(w, glm::vec4(1.0f), workers), black, {}, rectify, {}, 1, kAll, workers);
+      const Accumulated a =
+          accumulate(flat_present(w, glm::vec4(1.0f), workers), black, {}, rectify, {}, 1, kAll, workers);
       for (int k = 0; k < 3; ++k) EXPECT_NEAR(double(a.history.color.at(4, 4)[k]), 1.0, 4e-6);
       EXPECT_NEAR(double(a.diagnostics.clip.at(4, 4)), 1.0, 1e-5);
       EXPECT_EQ(a.counts.clipped, w.pixels());
@@ -376,7 +380,8 @@ TEST(Accumulate, ClippingLeavesNothingOutsideTheBox) {
 }
 
 TEST(SampleWeights, KernelsIntegrateToOneAndEndAtTheirRadius) {
-  for (const SampleFilter filter : {SampleFilter::tent, SampleFilter::gaussian, SampleFilter::blackman_harris, SampleFilter::mitchell}) {
+  for (const SampleFilter filter :
+       {SampleFilter::tent, SampleFilter::gaussian, SampleFilter::blackman_harris, SampleFilter::mitchell}) {
     double sum = 0;
     const double step = 1e-3;
     for (double x = -4 + step / 2; x < 4; x += step) sum += reconstruction_kernel(filter, x) * step;
