@@ -20,10 +20,11 @@ VARVE_INLINE Axis axis_at(double position) {
   return {base, float(position - base)};
 }
 
-/// Catmull-Rom weights (Keys, a = -1/2) of the pixels base-1 .. base+2.
+/// Catmull-Rom weights (Keys, a = -1/2) of the pixels base-1 .. base+2, as four cubics at once; exact at f = 0.
 VARVE_INLINE Float4 catmull_rom_weights(float f) {
-  return Float4{f * (-0.5f + f * (1.0f - 0.5f * f)), 1.0f + f * f * (-2.5f + 1.5f * f),
-                f * (0.5f + f * (2.0f - 1.5f * f)), f * f * (-0.5f + 0.5f * f)};
+  const Float4 cubic{-0.5f, 1.5f, -1.5f, 0.5f}, square{1.0f, -2.5f, 2.0f, -0.5f}, linear{-0.5f, 0.0f, 0.5f, 0.0f};
+  const Float4 constant{0.0f, 1.0f, 0.0f, 0.0f};
+  return ((cubic * f + square) * f + linear) * f + constant;
 }
 
 /// The same by three taps, the middle one a linear blend of two pixels (the form GPUs use: 9 fetches for 16 pixels).

@@ -24,10 +24,21 @@ VARVE_INLINE Float4 splat(float v) { return Float4{v, v, v, v}; }
 VARVE_INLINE Double4 splat(double v) { return Double4{v, v, v, v}; }
 VARVE_INLINE Double4 widen(Float4 v) { return __builtin_convertvector(v, Double4); }
 VARVE_INLINE Float4 narrow(Double4 v) { return __builtin_convertvector(v, Float4); }
+// GCC makes a comparison and a blend of a vector `a < b ? a : b`; the instruction does just that.
+#if defined(__SSE2__)
+VARVE_INLINE Float4 least(Float4 a, Float4 b) { return __builtin_ia32_minps(a, b); }
+VARVE_INLINE Float4 greatest(Float4 a, Float4 b) { return __builtin_ia32_maxps(a, b); }
+#else
 VARVE_INLINE Float4 least(Float4 a, Float4 b) { return a < b ? a : b; }
 VARVE_INLINE Float4 greatest(Float4 a, Float4 b) { return a > b ? a : b; }
+#endif
+#if defined(__AVX__)
+VARVE_INLINE Double4 least(Double4 a, Double4 b) { return __builtin_ia32_minpd256(a, b); }
+VARVE_INLINE Double4 greatest(Double4 a, Double4 b) { return __builtin_ia32_maxpd256(a, b); }
+#else
 VARVE_INLINE Double4 least(Double4 a, Double4 b) { return a < b ? a : b; }
 VARVE_INLINE Double4 greatest(Double4 a, Double4 b) { return a > b ? a : b; }
+#endif
 VARVE_INLINE Double4 magnitude(Double4 v) { return v < 0.0 ? -v : v; }
 VARVE_INLINE Double4 square_root(Double4 v) {
 #ifdef __AVX__

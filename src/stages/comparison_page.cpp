@@ -25,7 +25,7 @@ h1 { font-size: 22px; margin: 0 0 4px; } h2 { font-size: 17px; margin: 32px 0 10
 .equal, .within { border-color: #2a8c4a; } .beyond { border-color: #c33b2e; } .incomparable { border-color: #b37a00; }
 table { border-collapse: collapse; background: #fff; font-variant-numeric: tabular-nums; }
 th, td { padding: 4px 12px; border-bottom: 1px solid var(--line); text-align: left; }
-td.n, th.n { text-align: right; white-space: nowrap; } th { font-weight: 600; }
+td b { white-space: nowrap; } td.n, th.n { text-align: right; white-space: nowrap; } th { font-weight: 600; }
 .scroll { overflow-x: auto; }
 .plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 14px; }
 .plot { background: #fff; border: 1px solid var(--line); padding: 8px 10px 4px; }

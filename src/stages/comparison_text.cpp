@@ -166,7 +166,7 @@ std::vector<std::string> remarks_of(const Comparison& c) {
 std::string comparison_text(const Comparison& c) {
   std::string out = "Verdict  " + verdict_sentence(c) + "\n";
   if (!c.frames.empty())
-    out += "Frames   " + format_frame_list(c.frames) + " (" + std::to_string(c.frames.size()) + " compared)\n";
+    out += "Frames   " + format_frame_list(c.frames) + " (" + std::to_string(c.frames.size()) + " in common)\n";
   for (const std::string& remark : remarks_of(c)) out += "  " + remark + "\n";
   if (c.verdict == Verdict::incomparable) return out;
   for (const ComparisonRow& row : c.rows) {

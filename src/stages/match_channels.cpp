@@ -16,6 +16,12 @@ const Channel& channel_at(const FrameHeaders& headers, ChannelRef ref) {
   return part_at(headers, ref).channels[std::size_t(ref.channel)];
 }
 
+/// With the part in front where there are several, as probe prints it.
+std::string full_name(const FrameHeaders& headers, ChannelRef ref) {
+  const bool several = headers.files[std::size_t(ref.file)].parts.size() > 1;
+  return (several ? part_at(headers, ref).name + ":" : "") + channel_at(headers, ref).name;
+}
+
 std::string text_of(const Window& w) {
   return std::to_string(w.x0) + "," + std::to_string(w.y0) + " " + std::to_string(w.width()) + "x" +
          std::to_string(w.height());
@@ -34,12 +40,13 @@ class Matcher {
  private:
   bool wants(std::string_view what) const { return std::ranges::find(job_.channels, what) != job_.channels.end(); }
   void say(std::string text, FindingKind kind = FindingKind::shape) {
-    match_.findings.push_back({std::move(text), kind});
+    const Finding finding{std::move(text), kind};
+    if (std::ranges::find(match_.findings, finding) == match_.findings.end()) match_.findings.push_back(finding);
   }
   void refuse(const std::string& why) {
     if (match_.incomparable.empty()) match_.incomparable = why;
   }
-  Window window_of(ChannelRef a, ChannelRef b, const std::string& name);
+  Window window_of(ChannelRef a, ChannelRef b, const std::string& where);
   void add_channel(const std::string& name, ChannelRef a, ChannelRef b, bool color);
   void add_subject(std::size_t a, std::size_t b);
   void match_subjects();
@@ -52,20 +59,20 @@ class Matcher {
 };
 
 /// The pixels to compare; refuses windows that differ.
-Window Matcher::window_of(ChannelRef a, ChannelRef b, const std::string& name) {
+Window Matcher::window_of(ChannelRef a, ChannelRef b, const std::string& where) {
   const Part &pa = part_at(a_, a), &pb = part_at(b_, b);
   const Window common = intersect(pa.data_window, pb.data_window);
   if (common.empty())
-    refuse("the data windows of " + name + " do not meet: " + text_of(pa.data_window) + " in A, " +
+    refuse("the data windows" + where + " do not meet: " + text_of(pa.data_window) + " in A, " +
            text_of(pb.data_window) + " in B");
   if (pa.data_window != pb.data_window) {
-    const std::string text = "the data windows of " + name + " differ: " + text_of(pa.data_window) + " in A, " +
+    const std::string text = "the data windows" + where + " differ: " + text_of(pa.data_window) + " in A, " +
                              text_of(pb.data_window) + " in B";
     if (!job_.common_window) refuse(text + "; --window common compares where both lie");
     say(text, FindingKind::note);
   }
   if (pa.display_window != pb.display_window) {
-    const std::string text = "the display windows of " + name + " differ: " + text_of(pa.display_window) + " in A, " +
+    const std::string text = "the display windows" + where + " differ: " + text_of(pa.display_window) + " in A, " +
                              text_of(pb.display_window) + " in B";
     if (!job_.common_window) refuse(text + "; --window common compares nevertheless");
     say(text, FindingKind::note);
@@ -80,7 +87,8 @@ void Matcher::add_channel(const std::string& name, ChannelRef a, ChannelRef b, b
   if (ca.type != cb.type)
     say("channel " + name + " is " + varve::name_of(ca.type) + " in A, " + varve::name_of(cb.type) + " in B",
         FindingKind::format);
-  const Window window = window_of(a, b, "channel " + name);
+  const FileHeader& file = a_.files[std::size_t(a.file)];
+  const Window window = window_of(a, b, file.parts.size() > 1 ? " of part " + part_at(a_, a).name : "");
   if ((ca.x_sampling != 1 || ca.y_sampling != 1) && part_at(a_, a).data_window != part_at(b_, b).data_window)
     return refuse("channel " + name + " is subsampled and its windows differ");
   match_.channels.push_back({name, a, b, window, color});
@@ -91,10 +99,11 @@ void Matcher::add_subject(std::size_t ia, std::size_t ib) {
   const std::string name = name_of(a);
   const std::size_t before = match_.channels.size();
   for (std::size_t k = 0; k < 4; ++k) {
-    const std::string channel = (a.layer.empty() ? "" : a.layer + ".") + "RGBA"[k];
+    if (!a.color[k] && !b.color[k]) continue;
+    const std::string channel = a.color[k] ? full_name(a_, *a.color[k]) : full_name(b_, *b.color[k]);
     if (a.color[k] && b.color[k])
       add_channel(channel, *a.color[k], *b.color[k], true);
-    else if (a.color[k] || b.color[k])
+    else
       say("channel " + channel + " is only in " + (a.color[k] ? "A" : "B"));
   }
   if (match_.channels.size() == before) return refuse("the colors of " + name + " have no channel in common");
@@ -154,7 +163,7 @@ void Matcher::match_by_name() {
   };
   each(a_, [&](const Part& part, ChannelRef ref) {
     const std::string& channel = part.channels[std::size_t(ref.channel)].name;
-    const std::string name = fa.parts.size() > 1 ? part.name + ":" + channel : channel;
+    const std::string name = full_name(a_, ref);
     if (const auto other = find(fa, part, channel, fb))
       add_channel(name, ref, *other, false);
     else
@@ -162,7 +171,7 @@ void Matcher::match_by_name() {
   });
   each(b_, [&](const Part& part, ChannelRef ref) {
     const std::string& channel = part.channels[std::size_t(ref.channel)].name;
-    if (!find(fb, part, channel, fa)) say("channel " + channel + " is only in B");
+    if (!find(fb, part, channel, fa)) say("channel " + full_name(b_, ref) + " is only in B");
   });
 }
 

@@ -12,7 +12,8 @@ constexpr double kWidth = 300, kHeight = 120, kLeft = 52, kRight = 10, kTop = 8,
 
 std::string number(double value) {
   std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%.4g", value);
+  const bool large = std::abs(value) >= 1e4 && std::abs(value) < 1e7;
+  std::snprintf(text.data(), text.size(), large ? "%.0f" : "%.4g", value);
   return text.data();
 }
 std::string place(double value) {

@@ -1,6 +1,7 @@
 #include "stages/read_present.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -36,17 +37,17 @@ Plane<glm::vec4> read_color(const Subject& subject, const FileSet& files, const 
   Plane<glm::vec4> color(window, kPresentBorder);
   const int width = window.width();
   workers.for_rows(window.y0, window.y1, [&](int y) {
-    glm::vec4* row = color.row(y);
-    std::vector<float> channel(static_cast<std::size_t>(width));
-    for (int k = 0; k < 4; ++k) {
-      if (const auto& ref = subject.color[std::size_t(k)]) {
+    std::array<std::vector<float>, 4> channels;
+    for (std::size_t k = 0; k < 4; ++k) {
+      channels[k].assign(static_cast<std::size_t>(width), k == 3 ? 1.0f : 0.0f);
+      if (const auto& ref = subject.color[k]) {
         const RawPlane& raw = pixels_of(files, *ref);
-        to_float(raw.type, raw.row(y - raw.window.y0), channel.data(), std::size_t(width));
-      } else {
-        std::fill(channel.begin(), channel.end(), k == 3 ? 1.0f : 0.0f);
+        to_float(raw.type, raw.row(y - raw.window.y0), channels[k].data(), channels[k].size());
       }
-      for (int x = 0; x < width; ++x) row[x][k] = channel[std::size_t(x)];
     }
+    const float *r = channels[0].data(), *g = channels[1].data(), *b = channels[2].data(), *a = channels[3].data();
+    glm::vec4* row = color.row(y);
+    for (int x = 0; x < width; ++x) row[x] = glm::vec4(r[x], g[x], b[x], a[x]);
   });
   return color;
 }

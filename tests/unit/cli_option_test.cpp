@@ -48,10 +48,10 @@ bool takes_numbers(const Option& option) {
 }
 
 const char* command_of(const Option& option) {
-  return (option.commands & kResolve) ? "resolve"
-         : (option.commands & kProbe) ? "probe"
-         : (option.commands & kSynth) ? "synth"
-                                      : "help";
+  if (option.commands & kResolve) return "resolve";
+  if (option.commands & kProbe) return "probe";
+  if (option.commands & kSynth) return "synth";
+  return (option.commands & kCompare) ? "compare" : "help";
 }
 
 TEST(OptionTable, NamesAndLettersAreUniqueWithinACommand) {
