@@ -67,7 +67,7 @@ std::vector<const Aov*> chosen_aovs(const OutputRequest& request) {
 Setup set_up(const ResolveJob& job) {
   const JitterSource jitter = parse_jitter_source(job.jitter);
   SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
-  check_vectors(job, info);
+  check_roles(job, info);
   Plan plan = make_plan(info, job.parameters, job.request, job.threads);
   Setup s{job, std::move(info), std::move(plan), jitter, {}, {}, chosen_aovs(job.request), {}, {}, {}};
   s.parameters = describe_parameters(job, s.info);

@@ -161,7 +161,11 @@ std::string hash_of(const std::string& text) {
   return hex;
 }
 
-void check_vectors(const ResolveJob& job, const SequenceInfo& info) {
+void check_roles(const ResolveJob& job, const SequenceInfo& info) {
+  for (const SequencePattern& role : job.input.roles)
+    if (info.frames.size() > 1 && !role.has_frame())
+      throw Failure(ExitCode::usage, "'" + role.text() + "' is one file for " + std::to_string(info.frames.size()) +
+                                         " frames; put the frame number in, as in motion.####.exr");
   if (info.frames.size() < 2 || job.roles.convention == "none") return;
   for (const Subject& subject : info.first.subjects)
     if (!subject.backward && !subject.forward)

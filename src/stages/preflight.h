@@ -36,9 +36,10 @@ std::string describe_side_inputs(const ResolveJob& job);
 /// not change.
 std::string hash_of(const std::string& text);
 
-/// Several frames without vectors would be averaged as if nothing moved: that is done only when asked for
-/// (--convention none). Throws Failure(inconsistent) naming the layer and the remedy.
-void check_vectors(const ResolveJob& job, const SequenceInfo& info);
+/// What several frames need: role files with a frame number of their own, and vectors, since without them all would be
+/// averaged as if nothing moved; that is done only when asked for (--convention none).
+/// Throws Failure(usage) or Failure(inconsistent) naming the file, the layer and the remedy.
+void check_roles(const ResolveJob& job, const SequenceInfo& info);
 
 /// Outputs differ from inputs and from each other, folders can be written to. Throws Failure.
 void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& schedule);

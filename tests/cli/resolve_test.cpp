@@ -274,6 +274,7 @@ const std::vector<Damage>& damages() {
       {"a folder nobody can write to", nothing, {"-o", "/proc/o.####.exr"}, 5, "/proc"},
       {"a folder that is not there", nothing, {"-o", "nowhere/o.####.exr"}, 5, "nowhere"},
       {"missing role file", nothing, {"--depth-file", "z.####.exr"}, 3, "z.0001.exr"},
+      {"one role file for many frames", nothing, {"--depth-file", "in.0001.exr"}, 2, "in.0001.exr"},
       {"missing jitter file", nothing, {"--jitter", "missing.csv"}, 3, "missing.csv"},
       {"missing color config",
        nothing,
