@@ -4,10 +4,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace varve {
+
+struct JsonMember;
 
 /// One value of a JSON text. Only the member that `kind` names means anything.
 struct JsonValue {
@@ -16,12 +17,17 @@ struct JsonValue {
   double number = 0;  ///< always finite
   std::string text;
   std::vector<JsonValue> items;
-  std::vector<std::pair<std::string, JsonValue>> members;  ///< in file order; names may repeat
+  std::vector<JsonMember> members;  ///< in file order; names may repeat
 
   /// First member of that name; null if this is no object or has none.
   const JsonValue* find(std::string_view name) const;
   /// The numbers of an array that holds nothing else; none otherwise.
   std::optional<std::vector<double>> numbers() const;
+};
+
+struct JsonMember {
+  std::string name;
+  JsonValue value;
 };
 
 /// Reads one whole JSON text (RFC 8259, surrounding blanks allowed). None for anything else: trailing characters,
