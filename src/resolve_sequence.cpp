@@ -142,6 +142,7 @@ FileSet read_pixels(const Setup& s, const FrameHeaders& headers, Workers& worker
 struct Resolved {
   Present present;
   Accumulated accumulated;
+  History prediction;  ///< only where the diagnostic plane of that name is asked for
 };
 
 Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHeaders& headers, const FileSet& pixels,
@@ -158,6 +159,9 @@ Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHead
   const std::uint32_t restart_bit = scheduled.restart_reason == "first frame" ? kRejectFirstFrame : kRejectCut;
   r.accumulated = accumulate(r.present, state.history, parameters.recursive, parameters.rectify, jitter, restart_bit,
                              diagnostics_wanted(s.aovs), workers);
+  const auto is_prediction = [](const Aov* aov) { return aov->name == "prediction"; };
+  if (std::any_of(s.aovs.begin(), s.aovs.end(), is_prediction))
+    r.prediction = predict(r.present, state.history, parameters.recursive, parameters.rectify, workers);
   report.pixels += part.data_window.pixels();
   report.not_finite += r.present.not_finite;
   report.restarted += r.accumulated.counts.restarted;
@@ -259,7 +263,8 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
       resolved.push_back(
           resolve_subject(s, headers.subjects[k], headers, pixels, scheduled, states[k], report, workers));
     for (std::size_t k = 0; k < resolved.size(); ++k)
-      subjects.push_back({&headers.subjects[k], &resolved[k].present, &resolved[k].accumulated});
+      subjects.push_back(
+          {&headers.subjects[k], &resolved[k].present, &resolved[k].accumulated, &resolved[k].prediction});
     report.resolve_seconds = clock.lap();
     if (stop()) break;
 

@@ -117,6 +117,12 @@ void check(const SynthJob& job, const Synth& synth) {
     throw Failure(ExitCode::usage,
                   "--jitter " + job.jitter + ": a file has one position for each frame, and --samples " +
                       std::to_string(job.samples) + " needs more; give a sequence such as halton23:16");
+  // All samples of a frame are held until it is written, some 70 bytes each.
+  constexpr std::size_t kMostSamples = std::size_t(1) << 27;
+  if (synth.window.pixels() * std::size_t(job.samples) * (job.layers ? 4 : 1) > kMostSamples)
+    throw Failure(ExitCode::usage,
+                  "a picture of this size with this many samples or layers would need more than 9 GiB of memory; make "
+                  "--size or --samples smaller");
   bool several = false;
   for (const synth::Shot& shot : synth.scene.shots)
     for (const synth::Surface& surface : shot.surfaces) several = several || surface.layer != Layer::background;

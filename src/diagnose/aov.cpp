@@ -16,6 +16,9 @@ constexpr Aov kAovs[] = {
      "Backward motion used, after dilation: previous position minus this position."},
     {"weight", "", PixelType::float32, "fraction", "0 to 1", "viridis", 0, 1,
      "Weight of the history in the output pixel; the present has the rest."},
+    {"prediction", "rgb", PixelType::float32, "scene-linear", "any", "viridis", 0, 1,
+     "What the frames before say this pixel is: the history rectified without the pixel itself, nothing of the present "
+     "blended in. 0 where there is no history. Its difference to the input ranks settings where no reference exists."},
     {"repaired", "", PixelType::float32, "flag", "0 or 1", "inferno", 0, 1,
      "1 where the input color was not finite and something else stands in the output."},
 };

@@ -1,7 +1,8 @@
 #include "resolve/accumulate.h"
 
 #include <algorithm>
-#include <mutex>
+#include <type_traits>
+#include <utility>
 
 #include "resolve/accumulate_row.h"
 #include "resolve/sample_weights.h"
@@ -76,58 +77,60 @@ History make_history(const Window& w) {
   return h;
 }
 
-}  // namespace
+/// The present as the kernel reads it, and the planes made for that.
+struct PresentView {
+  WeighedPresent weighed;    // what is blended in where samples are weighed by their position
+  Plane<glm::vec4> rotated;  // the neighborhood in the space of the box
+  Plane<glm::vec2> at_rest;  // without vectors every pixel stays where it is
+  std::vector<std::uint8_t> rows_valid;
+};
 
-Accumulated accumulate(const Present& present, const History& previous, const RecursiveParameters& recursive,
-                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, std::uint32_t restart_bit,
-                       const DiagnosticsWanted& wanted, Workers& workers, Isa isa) {
+PresentView view_present(AccumulateView& v, const Present& present, const RectifyParameters& rectify,
+                         SampleFilter sample_filter, std::optional<glm::dvec2> jitter, Workers& workers) {
   const Window& w = present.color.window();
-  Accumulated out{make_history(w), {}, {}};
-  if (w.empty()) return out;
+  PresentView made;
+  if (sample_filter != SampleFilter::none && jitter)
+    made.weighed = weigh_samples(present, sample_filter, *jitter, workers);
+  if (rectify.box != Box::none && rectify.space == BoxSpace::ycocg)
+    made.rotated = rotate_to_ycocg(present.color, workers);
+  if (present.motion.empty()) made.at_rest = Plane<glm::vec2>(w, 0, glm::vec2(0.0f));
+
+  v.width = w.width();
+  v.height = w.height();
+  v.color = read_rows(made.weighed.color.empty() ? present.color : made.weighed.color);
+  v.neighbors = read_rows(made.rotated.empty() ? present.color : made.rotated);
+  v.weight = read_rows(present.valid);
+  v.motion = read_rows(present.motion.empty() ? made.at_rest : present.motion);
+  v.sample_weight = read_rows(made.weighed.sample_weight);
+  v.radius = rectify.window / 2;
+  made.rows_valid.assign(std::size_t(w.height() + 2 * v.radius), 0);
+  std::copy(present.rows_valid.begin(), present.rows_valid.end(), made.rows_valid.begin() + v.radius);
+  v.rows_valid = made.rows_valid.data() + v.radius;
+  return made;
+}
+
+void view_history(AccumulateView& v, const Present& present, const History& previous, Disocclusion disocclusion) {
+  if (previous.empty()) return;
+  const Window &w = present.color.window(), &h = previous.color.window();
+  v.history_width = h.width();
+  v.history_height = h.height();
+  v.shift_x = w.x0 - h.x0;
+  v.shift_y = w.y0 - h.y0;
+  v.history_color = read_rows(previous.color);
+  v.history_total = read_rows(previous.total);
+  v.history_spread = read_rows(previous.spread);
+  v.history_rows_valid = previous.rows_valid.data();
+  if (disocclusion == Disocclusion::depth && !present.depth.empty() && !previous.depth.empty()) {
+    v.depth = read_rows(present.depth);
+    v.history_depth = read_rows(previous.depth);
+  }
+}
+
+void view_output(AccumulateView& v, Accumulated& out, const DiagnosticsWanted& wanted) {
+  const Window& w = out.history.color.window();
   if (wanted.clip) out.diagnostics.clip = Plane<float>(w);
   if (wanted.weight) out.diagnostics.weight = Plane<float>(w);
   if (wanted.reject) out.diagnostics.reject = Plane<std::uint32_t>(w);
-
-  // What is blended in: the sample of the pixel, or the samples around its centre.
-  WeighedPresent weighed;
-  if (recursive.sample_filter != SampleFilter::none && jitter)
-    weighed = weigh_samples(present, recursive.sample_filter, *jitter, workers);
-  const bool rotated = rectify.box != Box::none && rectify.space == BoxSpace::ycocg;
-  const Plane<glm::vec4> ycocg = rotated ? rotate_to_ycocg(present.color, workers) : Plane<glm::vec4>();
-
-  // At rest: every pixel stays where it is.
-  const Plane<glm::vec2> at_rest =
-      present.motion.empty() ? Plane<glm::vec2>(w, 0, glm::vec2(0.0f)) : Plane<glm::vec2>();
-
-  AccumulateView v{};
-  v.width = w.width();
-  v.height = w.height();
-  v.color = read_rows(weighed.color.empty() ? present.color : weighed.color);
-  v.neighbors = read_rows(rotated ? ycocg : present.color);
-  v.weight = read_rows(present.valid);
-  v.motion = read_rows(present.motion.empty() ? at_rest : present.motion);
-  v.sample_weight = read_rows(weighed.sample_weight);
-  v.radius = rectify.window / 2;
-  std::vector<std::uint8_t> rows_valid(std::size_t(w.height() + 2 * v.radius), 0);
-  std::copy(present.rows_valid.begin(), present.rows_valid.end(), rows_valid.begin() + v.radius);
-  v.rows_valid = rows_valid.data() + v.radius;
-
-  if (!previous.empty()) {
-    const Window& h = previous.color.window();
-    v.history_width = h.width();
-    v.history_height = h.height();
-    v.shift_x = w.x0 - h.x0;
-    v.shift_y = w.y0 - h.y0;
-    v.history_color = read_rows(previous.color);
-    v.history_total = read_rows(previous.total);
-    v.history_spread = read_rows(previous.spread);
-    v.history_rows_valid = previous.rows_valid.data();
-    if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty() && !previous.depth.empty()) {
-      v.depth = read_rows(present.depth);
-      v.history_depth = read_rows(previous.depth);
-    }
-  }
-
   v.out_color = write_rows(out.history.color);
   v.out_total = write_rows(out.history.total);
   v.out_spread = write_rows(out.history.spread);
@@ -135,38 +138,74 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
   v.out_weight = write_rows(out.diagnostics.weight);
   if (wanted.reject) v.out_reject = {out.diagnostics.reject.row(w.y0), out.diagnostics.reject.stride()};
   v.out_rows_valid = out.history.rows_valid.data();
-  v.restart_bit = restart_bit;
+}
+
+void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const RectifyParameters& rectify) {
   v.filter = recursive.history_filter;
   v.dering = recursive.dering;
+  v.alpha_rule = recursive.alpha_rule;
+  v.alpha = recursive.alpha;
+  v.depth_tolerance = recursive.depth_tolerance;
+  v.max_motion = 1e9;  // the decoder has made unusable vectors NaN; this only keeps positions inside an int
   v.box = rectify.box;
   v.rule = rectify.rule;
   v.anchor = rectify.anchor;
   v.space = rectify.space;
   v.gamma = rectify.gamma;
-  v.alpha_rule = recursive.alpha_rule;
-  v.alpha = recursive.alpha;
-  v.depth_tolerance = recursive.depth_tolerance;
-  v.max_motion = 1e9;  // the decoder has made unusable vectors NaN; this only keeps positions inside an int
+}
 
+AccumulateCounts run_rows(const AccumulateView& v, Isa isa, Workers& workers) {
   const auto kernel = kernel_for(isa);
   std::vector<Scratch> scratch;
-  for (int i = 0; i < workers.count(); ++i) scratch.emplace_back(w.width());
+  for (int i = 0; i < workers.count(); ++i) scratch.emplace_back(v.width);
   std::vector<RowCounts> counts(std::size_t(workers.count()));
   constexpr int kBand = 8;  // rows: neighbors share what is in the cache
-  workers.for_each(std::size_t((w.height() + kBand - 1) / kBand), [&](std::size_t band, int worker) {
+  workers.for_each(std::size_t((v.height + kBand - 1) / kBand), [&](std::size_t band, int worker) {
     const RowScratch rows = scratch[std::size_t(worker)].view();
-    const int end = std::min(w.height(), int(band + 1) * kBand);
+    const int end = std::min(v.height, int(band + 1) * kBand);
     for (int y = int(band) * kBand; y < end; ++y) kernel(v, y, rows, counts[std::size_t(worker)]);
   });
-
+  AccumulateCounts sum;
   for (const RowCounts& c : counts) {
-    out.counts.restarted += c.restarted;
-    out.counts.clipped += c.clipped;
-    out.counts.vectors_bad += c.vectors_bad;
+    sum.restarted += c.restarted;
+    sum.clipped += c.clipped;
+    sum.vectors_bad += c.vectors_bad;
   }
+  return sum;
+}
+
+}  // namespace
+
+Accumulated accumulate(const Present& present, const History& previous, const RecursiveParameters& recursive,
+                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, std::uint32_t restart_bit,
+                       const DiagnosticsWanted& wanted, Workers& workers, Isa isa) {
+  Accumulated out{make_history(present.color.window()), {}, {}};
+  if (present.color.window().empty()) return out;
+  AccumulateView v{};
+  const PresentView made = view_present(v, present, rectify, recursive.sample_filter, jitter, workers);
+  view_history(v, present, previous, recursive.disocclusion);
+  view_output(v, out, wanted);
+  view_choices(v, recursive, rectify);
+  v.restart_bit = restart_bit;
+  out.counts = run_rows(v, isa, workers);
   if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty())
     out.history.depth = present.depth.clone();
   return out;
+}
+
+History predict(const Present& present, const History& previous, const RecursiveParameters& recursive,
+                const RectifyParameters& rectify, Workers& workers) {
+  Accumulated out{make_history(present.color.window()), {}, {}};
+  if (present.color.window().empty()) return std::move(out.history);
+  AccumulateView v{};
+  const PresentView made = view_present(v, present, rectify, SampleFilter::none, {}, workers);
+  view_history(v, present, previous, recursive.disocclusion);
+  view_output(v, out, {});
+  view_choices(v, recursive, rectify);
+  v.anchor = BoxAnchor::mean;
+  v.leave_present_out = true;
+  run_rows(v, Isa::automatic, workers);
+  return std::move(out.history);
 }
 
 }  // namespace varve

@@ -80,4 +80,11 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, std::uint32_t restart_bit,
                        const DiagnosticsWanted& wanted, Workers& workers, Isa isa = Isa::automatic);
 
+/// What the frames before say of the present: the history as accumulate() would fetch it, rectified by the neighborhood
+/// without the pixel itself and towards its mean, so that nothing of the sample it is held against is in it.
+/// color is 0 and total 0 where there is no history. Comparing it with the samples of the present ranks settings
+/// without a reference: the expected squared difference is the error of the prediction plus the noise of the sample.
+History predict(const Present& present, const History& previous, const RecursiveParameters& recursive,
+                const RectifyParameters& rectify, Workers& workers);
+
 }  // namespace varve

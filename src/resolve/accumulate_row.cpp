@@ -42,7 +42,7 @@ void rectify_span(const AccumulateView& v, int y, int begin, int end, const RowS
 
 template <Box kind, int r>
 void rectify_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
-  bool valid = true;
+  bool valid = !v.leave_present_out;
   for (int j = -r; j <= r; ++j) valid = valid && v.rows_valid[y + j];
   // Where every neighbor is known to count, the test for it is left out; the result is the same.
   const int begin = valid ? (r < v.width ? r : v.width) : v.width;
@@ -79,6 +79,16 @@ VARVE_INLINE double present_weight(const AccumulateView& v, double total, double
   // alpha is meant for a sample of weight 1; others move it in proportion, seen from the steady state.
   const double steady = w == 1 ? v.alpha : v.alpha * w / (1 - v.alpha + v.alpha * w);
   return v.alpha_rule == AlphaRule::fixed ? steady : biggest(steady, w / (total + w));
+}
+
+/// The rectified history alone; 0 where there is none.
+void copy_history(const AccumulateView& v, int y, const RowScratch& s) {
+  for (int x = 0; x < v.width; ++x) {
+    const bool has_history = s.total[x] > 0;
+    store(v.out_color.origin + y * v.out_color.stride + 4 * x, has_history ? load(s.history + 4 * x) : splat(0.0f));
+    v.out_total.origin[y * v.out_total.stride + x] = s.total[x];
+    v.out_spread.origin[y * v.out_spread.stride + x] = has_history ? s.spread[x] : 0;
+  }
 }
 
 void blend_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
@@ -119,7 +129,10 @@ void blend_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& c
 void accumulate_row(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts) {
   fetch_history(view, y, scratch);
   rectify(view, y, scratch, counts);
-  blend_row(view, y, scratch, counts);
+  if (view.leave_present_out)
+    copy_history(view, y, scratch);
+  else
+    blend_row(view, y, scratch, counts);
 }
 
 }  // namespace varve::VARVE_ISA

@@ -60,6 +60,7 @@ struct AccumulateView {
   double alpha;
   double depth_tolerance;
   double max_motion;
+  bool leave_present_out;  // the pixel itself is no part of its neighborhood and is not blended in
 };
 
 /// Sums over a row, added up by the caller.

@@ -26,7 +26,8 @@ template <int r, bool with_moments, bool with_extremes, bool masked>
 VARVE_INLINE WindowStatistics gather_window(const AccumulateView& v, int x, int y) {
   const std::ptrdiff_t stride = v.neighbors.stride;
   const float* centre = v.neighbors.origin + y * stride + 4 * x;
-  const Double4 pivot = widen(load(centre));
+  // A pixel left out must not even leave its rounding: its neighbor takes its place as the shift.
+  const Double4 pivot = widen(load(masked && v.leave_present_out ? centre - 4 : centre));
   Double4 sum = splat(0.0), squares = splat(0.0);
   Float4 low = splat(__builtin_inff()), high = splat(-__builtin_inff());
   double n = 0;
@@ -37,7 +38,7 @@ VARVE_INLINE WindowStatistics gather_window(const AccumulateView& v, int x, int 
 #pragma GCC unroll 7
     for (int i = 0; i <= 2 * r; ++i) {
       const Float4 c = load(row + 4 * i);
-      if (masked && !(weight[i] > 0)) continue;
+      if (masked && (!(weight[i] > 0) || (v.leave_present_out && i == r && j == 0))) continue;
       if constexpr (with_extremes) {
         low = least(c, low);
         high = greatest(c, high);

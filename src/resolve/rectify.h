@@ -25,12 +25,13 @@ VARVE_INLINE double length3(Double4 v) {
   return __builtin_sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);  // squares of floats fit a double
 }
 
-/// True when no neighbor of an invalid pixel is valid either: history stands as it is.
+/// True when no pixel of the neighborhood has a say: history stands as it is.
 template <int r>
 VARVE_INLINE bool alone(const AccumulateView& v, int x, int y) {
   for (int j = -r; j <= r; ++j)
     for (int i = -r; i <= r; ++i)
-      if (v.weight.origin[(y + j) * v.weight.stride + x + i] > 0) return false;
+      if (v.weight.origin[(y + j) * v.weight.stride + x + i] > 0 && !(v.leave_present_out && i == 0 && j == 0))
+        return false;
   return true;
 }
 

@@ -68,6 +68,17 @@ void drop_finished(std::vector<ScheduledFrame>& schedule) {
   schedule = std::move(kept);
 }
 
+/// What was asked for; a sidecar by its numbers, since they may change under its name.
+std::string describe_jitter(const std::string& jitter) {
+  std::string rows;
+  for (const auto& [frame, offset] : parse_jitter_source(jitter).table) {
+    char row[80];
+    std::snprintf(row, sizeof row, "%d:%.17g,%.17g ", frame, offset.x, offset.y);
+    rows += row;
+  }
+  return rows.empty() ? jitter : "table:" + hash_of(rows);
+}
+
 std::filesystem::path canonical(const std::string& path) { return std::filesystem::weakly_canonical(path); }
 
 }  // namespace
@@ -91,15 +102,15 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   std::vector<int> cuts = job.cuts;
   std::sort(cuts.begin(), cuts.end());
   if (!cuts.empty()) text += " cuts=" + format_frame_list(cuts);
-  text += " jitter=" + info.jitter_source + " convention=" + job.roles.convention;
+  text += " jitter=" + describe_jitter(job.jitter) + " convention=" + job.roles.convention;
   for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
   for (const auto& [role, channel] : job.roles.map) text += " map:" + role + "=" + channel;
   for (const Subject& subject : info.first.subjects) {
     const MotionEncoding& e = subject.backward ? subject.backward_encoding : subject.forward_encoding;
     char encoding[160];
-    std::snprintf(encoding, sizeof encoding, " vectors:%s=%s,%.17g,%.17g,%.17g,%g,%g,%d,%d", subject.layer.c_str(),
-                  subject.convention.c_str(), e.bias, e.scale, e.shutter, e.sign_x, e.sign_y, int(e.unit),
-                  int(e.direction));
+    std::snprintf(encoding, sizeof encoding, ",%.17g,%.17g,%.17g,%g,%g,%d,%d", e.bias, e.scale, e.shutter, e.sign_x,
+                  e.sign_y, int(e.unit), int(e.direction));
+    text += " vectors:" + subject.layer + "=" + subject.convention;
     text += encoding;
   }
   for (const std::string& aov : job.request.aovs) text += " aov=" + aov;
@@ -107,6 +118,7 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   if (!job.request.keep_channels) text += " keep=none";
   if (job.compression) text += std::string(" compression=") + name_of(*job.compression);
   text += " zip-level=" + std::to_string(job.zip_level);
+  if (!job.ocio_config.empty()) text += " ocio=" + job.ocio_config;
   if (!job.from_space.empty()) text += " from-space=" + job.from_space;
   if (!job.to_space.empty()) text += " to-space=" + job.to_space;
   return text;

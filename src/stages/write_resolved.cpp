@@ -163,6 +163,7 @@ Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubje
   if (aov.name == "weight") fill(of(a.diagnostics.weight));
   if (aov.name == "reject") fill(of(a.diagnostics.reject));
   if (aov.name == "repaired") fill([&](int x, int y) { return 1.0f - present.valid.row(y)[x]; });
+  if (aov.name == "prediction") fill([&](int x, int y) { return resolved.prediction->color.row(y)[x][component]; });
   if (aov.name == "count")
     fill([&](int x, int y) { return a.history.total.row(y)[x] > 0 ? 1.0f / a.history.spread.row(y)[x] : 0.0f; });
   if (aov.name == "motion")

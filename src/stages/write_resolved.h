@@ -19,6 +19,7 @@ struct ResolvedSubject {
   const Subject* subject = nullptr;
   const Present* present = nullptr;
   const Accumulated* accumulated = nullptr;
+  const History* prediction = nullptr;  ///< only where the plane `prediction` is asked for
 };
 
 /// Parts ready for write_frame, and the planes they point to.

@@ -90,6 +90,7 @@ TEST_F(Synth, OneThingWrong) {
   expect_refused(run({"panes", "-o", "out", "--layers", "--samples", "2"}), 2, "--samples");
   for (const char* size : {"320", "0x5", "x", "320x", "-1x4", "20000x4", "4x4x4"})
     expect_refused(run({"pan", "-o", "out", "--size", size}), 2, "--size");
+  expect_refused(run({"pan", "-o", "out", "--size", "16384x16384"}), 2, "--size");
   expect_refused(run({"pan", "-o", "out", "--yardsticks", "2,0"}), 2, "--yardsticks");
   EXPECT_FALSE(fs::exists(folder / "out"));
   std::ofstream(folder / "file") << "no folder";

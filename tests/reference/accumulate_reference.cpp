@@ -126,12 +126,13 @@ struct BoxBounds {
   Color low, high, mean;
 };
 
-std::optional<BoxBounds> box_of(const Present& present, const RectifyParameters& p, int x, int y) {
+std::optional<BoxBounds> box_of(const Present& present, const RectifyParameters& p, int x, int y,
+                                bool with_centre = true) {
   std::vector<Color> samples;
   const int r = p.window / 2;
   for (int j = y - r; j <= y + r; ++j)
     for (int i = x - r; i <= x + r; ++i)
-      if (present.color.window().contains(i, j) && present.valid.at(i, j) > 0)
+      if (present.color.window().contains(i, j) && present.valid.at(i, j) > 0 && (with_centre || i != x || j != y))
         samples.push_back(rotate(color_of(present.color.at(i, j)), p.space));
   if (samples.empty()) return {};
   BoxBounds b;
@@ -245,6 +246,21 @@ Pixel accumulate_pixel(const Present& present, const History& previous, const Re
   out.total = past.total + w;
   out.spread = past.spread * (1 - a) * (1 - a) + a * a;
   out.weight = 1 - a;
+  return out;
+}
+
+Pixel predict_pixel(const Present& present, const History& previous, const RecursiveParameters& p,
+                    const RectifyParameters& rectify, int x, int y) {
+  Pixel out;
+  if (previous.empty()) return out;
+  const Fetched past = fetch(previous, present, p, x, y);
+  if (past.total <= 0) return out;
+  out.color = past.color;
+  out.total = past.total;
+  RectifyParameters towards_mean = rectify;
+  towards_mean.anchor = BoxAnchor::mean;
+  if (rectify.box != Box::none)
+    if (const auto box = box_of(present, rectify, x, y, false)) rectify_color(out.color, {}, *box, towards_mean);
   return out;
 }
 

@@ -24,6 +24,10 @@ Pixel accumulate_pixel(const Present& present, const History& previous, const Re
                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
                        int y);
 
+/// What predict() must give; total 0 where there is no history.
+Pixel predict_pixel(const Present& present, const History& previous, const RecursiveParameters& recursive,
+                    const RectifyParameters& rectify, int x, int y);
+
 /// The vector a pixel follows, by looking at all nine.
 glm::vec2 dilated_motion(const Plane<glm::vec2>& motion, const Plane<float>& depth, Dilation dilation, int x, int y);
 

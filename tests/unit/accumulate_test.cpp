@@ -129,6 +129,31 @@ TEST(Accumulate, AgreesWithItsSlowTwin) {
   }
 }
 
+TEST(Accumulate, PredictionAgreesWithItsSlowTwinAndOwesNothingToThePresentPixel) {
+  Workers workers(2);
+  const Window w{0, 0, 37, 23};
+  for (const TwinCase& c : twin_cases()) {
+    SCOPED_TRACE(std::string(c.name) + " seed " + std::to_string(c.noise.seed));
+    test::NoiseOptions before = c.noise;
+    before.seed += 1000;
+    const History h = next_history(noise_present(w, before, workers), {}, c.recursive, c.rectify, workers);
+    const Present present = noise_present(w, c.noise, workers);
+    const History fast = predict(present, h, c.recursive, c.rectify, workers);
+    for (int y = 0; y < w.y1; ++y)
+      for (int x = 0; x < w.x1; ++x) {
+        const reference::Pixel slow = reference::predict_pixel(present, h, c.recursive, c.rectify, x, y);
+        ASSERT_EQ(fast.total.at(x, y) > 0, slow.total > 0) << x << "," << y;
+        for (std::size_t k = 0; k < 4; ++k)
+          ASSERT_NEAR(double(fast.color.at(x, y)[int(k)]), slow.color[k], 2e-6 * (300 + std::abs(slow.color[k])))
+              << x << "," << y;
+      }
+    Present other = noise_present(w, c.noise, workers);
+    other.color.at(18, 11) = glm::vec4(65504.0f);
+    other.valid.at(18, 11) = present.valid.at(18, 11);
+    EXPECT_EQ(predict(other, h, c.recursive, c.rectify, workers).color.at(18, 11), fast.color.at(18, 11));
+  }
+}
+
 TEST(Accumulate, BothProcessorsGiveTheSameBits) {
   Workers workers(2);
   for (const TwinCase& c : twin_cases()) {
