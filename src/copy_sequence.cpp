@@ -22,7 +22,8 @@ std::vector<ChannelRef> channels_of(const FrameHeaders& headers, int file) {
     if (file == 0)
       for (int c = 0; c < int(headers.files.front().parts[std::size_t(part)].channels.size()); ++c) add({0, part, c});
     if (subject.depth) add(*subject.depth);
-    if (const auto& vectors = subject.backward ? subject.backward : subject.forward) add((*vectors)[0]), add((*vectors)[1]);
+    if (const auto& vectors = subject.backward ? subject.backward : subject.forward)
+      add((*vectors)[0]), add((*vectors)[1]);
   }
   return wanted;
 }

@@ -15,6 +15,7 @@
 #include "compare_sequence.h"
 #include "diagnose/trade.h"
 #include "stages/preflight.h"
+#include "stages/read_pair.h"
 #include "stages/score_left_out.h"
 
 namespace varve {
@@ -68,7 +69,9 @@ ProcessRun run_varve(const MeasureJob& job, const ScratchFolder& scratch, const 
   const std::string prefix = "varve: error: ";
   if (why.starts_with(prefix)) why.erase(0, prefix.size());
   const bool known = run.code >= int(ExitCode::usage) && run.code <= int(ExitCode::self_check);
-  throw Failure(known ? ExitCode(run.code) : run.code >= 128 ? ExitCode::interrupted : ExitCode::self_check,
+  throw Failure(known             ? ExitCode(run.code)
+                : run.code >= 128 ? ExitCode::interrupted
+                                  : ExitCode::self_check,
                 "the run of '" + name + "' ended with code " + std::to_string(run.code) + ": " + why);
 }
 
@@ -95,13 +98,12 @@ void find_reference(const MeasureJob& job, Measurement& m) {
   if (there.empty()) throw Failure(ExitCode::input, "no file of " + what + " is there; check the pattern");
   std::ranges::set_intersection(m.frames, there, std::back_inserter(m.scored));
   if (m.scored.empty())
-    throw Failure(ExitCode::inconsistent, what + " has frames " + format_frame_list(there) +
-                                              " and the input has " + format_frame_list(m.frames) +
-                                              ": none in common");
+    throw Failure(ExitCode::inconsistent, what + " has frames " + format_frame_list(there) + " and the input has " +
+                                              format_frame_list(m.frames) + ": none in common");
   if (m.scored.size() < m.frames.size())
     m.notes.push_back("the reference has " + std::to_string(m.scored.size()) + " of the " +
-                      std::to_string(m.frames.size()) + " frames: those are scored (" +
-                      format_frame_list(m.scored) + ")");
+                      std::to_string(m.frames.size()) + " frames: those are scored (" + format_frame_list(m.scored) +
+                      ")");
   const FramePair pair = read_frame_pair(compare_job(job, job.resolve.input.color, m.scored), m.scored.front(), false);
   if (!pair.match.incomparable.empty())
     throw Failure(ExitCode::inconsistent, "the input cannot be compared with " + what + ": frame " +
@@ -205,8 +207,8 @@ Measurement measure_sequence(const MeasureJob& job, const MeasureEvents& events)
   // What will be run, and against what: headers only.
   Measurement m;
   m.baseline = find_baseline(job);
-  const SequenceInfo info = probe_sequence(job.resolve.input, job.resolve.frames, job.resolve.roles,
-                                           parse_jitter_source(job.resolve.jitter));
+  const SequenceInfo info =
+      probe_sequence(job.resolve.input, job.resolve.frames, job.resolve.roles, parse_jitter_source(job.resolve.jitter));
   check_vectors(job.resolve, info);
   m.frames = info.frames;
   m.with_reference = job.reference.has_value();

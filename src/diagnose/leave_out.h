@@ -13,12 +13,12 @@ namespace varve {
 
 /// Sums over R, G, B of the pixels whose sample is finite. The noise of the sample is not known to the prediction, so
 /// the expected square is the error of the prediction plus the noise, which is the same for every setting: the score
-/// ranks settings, it does not tell how wrong they are. Where a setting has no history, the mean of the neighbors stands
-/// in for it, so that every setting is judged by the same pixels and cannot gain by giving up on the hard ones.
+/// ranks settings, it does not tell how wrong they are. Where a setting has no history, the mean of the neighbors
+/// stands in for it, so that every setting is judged by the same pixels and cannot gain by giving up on the hard ones.
 struct LeaveOut {
   std::size_t values = 0, without_history = 0;  ///< counts of R, G, B values
-  double linear = 0;  ///< squares of differences after holding to 0..1
-  double tone = 0;    ///< squares after x / (1 + x), negative values counting as 0
+  double linear = 0;                            ///< squares of differences after holding to 0..1
+  double tone = 0;                              ///< squares after x / (1 + x), negative values counting as 0
 
   LeaveOut& operator+=(const LeaveOut& more);
   double psnr() const;       ///< dB, peak 1; NaN without values

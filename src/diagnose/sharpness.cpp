@@ -23,9 +23,7 @@ void add_step(Sharpness& sums, const ColorPair& pair, int x, int y, int nx, int 
 
 }  // namespace
 
-double Sharpness::share() const {
-  return squares > 0 ? product / squares : std::numeric_limits<double>::quiet_NaN();
-}
+double Sharpness::share() const { return squares > 0 ? product / squares : std::numeric_limits<double>::quiet_NaN(); }
 
 Sharpness sharpness_of(const ColorPair& pair, Workers& workers) {
   const Window window = pair.window();

@@ -19,8 +19,8 @@ double median(std::vector<double> values);
 /// For each point whether no other is at least as good in both and better in one. Equal points stand together.
 std::vector<bool> pareto_front(std::span<const TradePoint> points);
 
-/// The fastest point whose error is at most `percent` above the least one; the less wrong one of equally fast ones. None
-/// when no error is a number.
+/// The fastest point whose error is at most `percent` above the least one; the less wrong one of equally fast ones.
+/// None when no error is a number.
 std::optional<std::size_t> cheapest_within(std::span<const TradePoint> points, double percent);
 
 /// Spearman's rank correlation of two equally long lists; equal values share their mean rank. NaN for fewer than two

@@ -11,14 +11,14 @@
 namespace varve {
 
 struct MeasureJob {
-  ResolveJob resolve;                     ///< input, frames, roles, threads; its output and parameters are not used
-  std::vector<std::string> resolve_words; ///< the same as arguments of varve resolve, without input and output
-  std::optional<SequencePattern> motion;  ///< files with motion vectors, where the input has none
+  ResolveJob resolve;                      ///< input, frames, roles, threads; its output and parameters are not used
+  std::vector<std::string> resolve_words;  ///< the same as arguments of varve resolve, without input and output
+  std::optional<SequencePattern> motion;   ///< files with motion vectors, where the input has none
   std::optional<SequencePattern> reference;
   std::vector<Setting> settings;
   int repeats = 3;
-  std::string baseline;  ///< name of a setting; empty: the preset `standard` where it is among them, else the first
-  double within = 5;     ///< percent above the least error that the recommendation may have
+  std::string baseline;    ///< name of a setting; empty: the preset `standard` where it is among them, else the first
+  double within = 5;       ///< percent above the least error that the recommendation may have
   bool leave_out = false;  ///< score without the reference too, and tell how well both agree
   std::string program;     ///< varve itself, run for each time
   std::string scratch;     ///< folder for what the runs write; removed piece by piece

@@ -30,7 +30,8 @@ std::vector<std::string> values_of(const std::string& sweep) {
     for (const std::string& value : split(std::string_view(sweep).substr(equals + 1), ','))
       values.push_back(sweep.substr(0, equals + 1) + value);
   if (values.empty())
-    throw Failure(ExitCode::usage, "a sweep is a parameter with its values, such as gamma=0.5,1,2, not '" + sweep + "'");
+    throw Failure(ExitCode::usage,
+                  "a sweep is a parameter with its values, such as gamma=0.5,1,2, not '" + sweep + "'");
   return values;
 }
 
