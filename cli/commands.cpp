@@ -115,8 +115,9 @@ std::vector<Command> command_table() {
        "setting costs (whole runs of the program: time per frame, peak memory, and the ratio to reading and writing "
        "alone) and how right it is. Settings that no other one beats in both are marked; the last lines are the "
        "cheapest setting close to the best, as a command line to copy.\n"
-       "With --reference the scores are those of `varve compare`. Without it each frame is predicted from the others "
-       "and held against its own samples. The noise of the samples is in that score, so it ranks settings and does not "
+       "With --reference the scores are those of `varve compare`. Without it each resolved frame is brought along "
+       "the motion and held against the samples of the next one, which had no part in it. The noise of the samples is "
+       "in that score, so it ranks settings and does not "
        "tell how wrong they are.\n"
        "The time to read and write alone is that of `varve floor`, which copies IN, decoded and encoded again, without "
        "resolving anything.",

@@ -127,19 +127,14 @@ void score_with_reference(const MeasureJob& job, const ScratchFolder& scratch, c
 }
 
 void score_without_reference(const MeasureJob& job, const ScratchFolder& scratch, const Measurement& m,
-                             const Setting& setting, SettingFigures& figures) {
-  std::vector<std::string> words = setting.arguments();
-  words.insert(words.end(), {"--quiet", "--aov=prediction,reject"});
-  run_varve(job, scratch, "resolve", words, figures.name);
+                             SettingFigures& figures) {
   Workers workers(job.resolve.threads);
   const LeftOutScore score = score_left_out(job, scratch.frames(), m.frames, workers);
-  figures.leave_out_tone = score.leave_out.psnr_tone();
-  figures.leave_out_linear = score.leave_out.psnr();
+  figures.leave_out = score.leave_out.decibels();
   figures.unsteady = score.unsteady.mean();
-  figures.without_history = double(score.leave_out.without_history) / double(score.leave_out.values);
   if (m.with_reference) return;
   figures.not_finite = double(score.not_finite);
-  figures.error = std::pow(10, -0.1 * figures.leave_out_tone);
+  figures.error = score.leave_out.mean();
 }
 
 std::size_t find_baseline(const MeasureJob& job) {
@@ -193,7 +188,7 @@ void conclude(const MeasureJob& job, Measurement& m) {
   for (const SettingFigures& f : m.settings) {
     points.push_back({f.seconds, f.error});
     truth.push_back(f.psnr_tone);
-    left_out.push_back(f.leave_out_tone);
+    left_out.push_back(f.leave_out);
   }
   const std::vector<bool> front = pareto_front(points);
   for (std::size_t i = 0; i < front.size(); ++i) m.settings[i].on_front = front[i];
@@ -220,7 +215,7 @@ Measurement measure_sequence(const MeasureJob& job, const MeasureEvents& events)
   for (const Setting& setting : job.settings) m.settings.push_back({setting.name()});
 
   const bool left_out = !m.with_reference || job.leave_out;
-  const int total = (job.repeats + (left_out ? 1 : 0)) * int(job.settings.size());
+  const int total = job.repeats * int(job.settings.size());
   int done = 0;
   const auto step = [&](const std::string& what) {
     if (events.should_stop && events.should_stop()) throw Failure(ExitCode::interrupted, "the measurement was stopped");
@@ -240,11 +235,8 @@ Measurement measure_sequence(const MeasureJob& job, const MeasureEvents& events)
       words.emplace_back("--quiet");
       runs[i].add(run_varve(job, scratch, "resolve", words, m.settings[i].name));
       if (m.with_reference && repeat == 0) score_with_reference(job, scratch, m, m.settings[i]);
+      if (left_out && repeat == 0) score_without_reference(job, scratch, m, m.settings[i]);
     }
-  }
-  for (std::size_t i = 0; i < job.settings.size() && left_out; ++i, ++done) {
-    step(m.settings[i].name);
-    score_without_reference(job, scratch, m, job.settings[i], m.settings[i]);
   }
 
   put_times(m, runs, floor, pixels);

@@ -24,11 +24,10 @@ struct SettingFigures {
   /// Against the reference, as in varve compare.
   double psnr_tone = kNotMeasured, flip = kNotMeasured, flicker = kNotMeasured, ghost = kNotMeasured,
          sharpness = kNotMeasured;
-  double not_finite = 0;  ///< values in the output; with a reference not the same there
-  double leave_out_tone = kNotMeasured, leave_out_linear = kNotMeasured;  ///< dB, see LeaveOut
-  double unsteady = kNotMeasured;         ///< mean square change along the motion from frame to frame
-  double without_history = kNotMeasured;  ///< share of the pixels that had none
-  double error = kNotMeasured;            ///< mean square that settings are ranked by
+  double not_finite = 0;            ///< values in the output; with a reference not the same there
+  double leave_out = kNotMeasured;  ///< dB, see LeaveOut
+  double unsteady = kNotMeasured;   ///< mean square change along the motion from frame to frame
+  double error = kNotMeasured;      ///< mean square that settings are ranked by
   bool on_front = false;
 };
 

@@ -32,10 +32,8 @@ constexpr Column kColumns[] = {
     {"flicker", "flicker", 9, "%.2e", [](const SettingFigures& f) { return f.flicker; }},
     {"ghost", "ghost", 8, "%.4f", [](const SettingFigures& f) { return f.ghost; }},
     {"sharpness", "sharp", 7, "%.3f", [](const SettingFigures& f) { return f.sharpness; }},
-    {"leave_out_psnr_tone", "left out", 9, "%.2f", [](const SettingFigures& f) { return f.leave_out_tone; }},
-    {"leave_out_psnr", "linear", 8, "%.2f", [](const SettingFigures& f) { return f.leave_out_linear; }},
+    {"left_out_db", "left out", 9, "%.2f", [](const SettingFigures& f) { return f.leave_out; }},
     {"unsteady", "unsteady", 10, "%.3e", [](const SettingFigures& f) { return f.unsteady; }},
-    {"without_history", "no hist", 8, "%.4f", [](const SettingFigures& f) { return f.without_history; }},
     {"not_finite", "not fin.", 9, "%.0f", [](const SettingFigures& f) { return f.not_finite; }},
 };
 
@@ -139,8 +137,9 @@ std::string measure_text(const Measurement& m, const MeasureJob& job) {
   for (const std::string& note : m.notes) out += "Note: " + note + "\n";
   if (!m.with_reference)
     out +=
-        "Without a reference the score ranks, it does not tell how wrong a setting is: \"left out\" is the PSNR of\n"
-        "what the other frames predict against the samples of the present one, whose noise is in it.\n";
+        "Without a reference the score ranks, it does not tell how wrong a setting is: \"left out\" is the difference "
+        "in dB\n"
+        "of each frame, brought along the motion, to the samples of the next one. Their noise is in it.\n";
   if (!std::isnan(m.rank_correlation)) {
     std::array<char, 32> text;
     std::snprintf(text.data(), text.size(), "%.3f", m.rank_correlation);

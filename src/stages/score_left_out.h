@@ -16,7 +16,7 @@ struct LeftOutScore {
   std::size_t not_finite = 0;  ///< R, G and B values of the output
 };
 
-/// `output` was written by a resolve of the job's input with the planes `prediction` and `reject`.
+/// `output` was written by a resolve of the job's input that keeps its channels.
 LeftOutScore score_left_out(const MeasureJob& job, const SequencePattern& output, const std::vector<int>& frames,
                             Workers& workers);
 

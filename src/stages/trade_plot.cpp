@@ -40,9 +40,7 @@ struct Place {
   }
 };
 
-double score_of(const Measurement& m, const SettingFigures& f) {
-  return m.with_reference ? f.psnr_tone : f.leave_out_tone;
-}
+double score_of(const Measurement& m, const SettingFigures& f) { return m.with_reference ? f.psnr_tone : f.leave_out; }
 
 void draw_axes(Drawing& d, const Place& place, const Measurement& m) {
   const float bottom = kTop + kPlotHeight, right = kLeft + kPlotWidth;
@@ -61,7 +59,7 @@ void draw_axes(Drawing& d, const Place& place, const Measurement& m) {
   d.texts.push_back(
       {{kLeft + kPlotWidth / 2, bottom + 32}, "time, ms per frame (left is faster)", kInk, Anchor::middle});
   d.texts.push_back({{14, kTop + kPlotHeight / 2},
-                     m.with_reference ? "PSNR (tone) to reference, dB" : "left-out PSNR (tone), dB: ranks only",
+                     m.with_reference ? "PSNR (tone) to reference, dB" : "left-out score, dB: ranks only",
                      kInk,
                      Anchor::middle,
                      true});
