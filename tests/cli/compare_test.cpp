@@ -23,11 +23,11 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::nume
 /// A float picture; `change` may alter anything.
 struct Picture {
   int width = 40, height = 32;
-  std::string prefix;  ///< of the channel names
+  std::string prefix = {};  ///< of the channel names
   std::vector<std::string> channels = {"R", "G", "B", "A"};
   float offset = 0;
   std::function<float(int frame, int x, int y, float value)> change = {};
-  std::string date;
+  std::string date = {};
   Imath::V2i origin = {0, 0};
 };
 

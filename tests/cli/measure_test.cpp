@@ -65,7 +65,7 @@ TEST_F(Measure, FloorCopiesThePixels) {
   EXPECT_EQ(run_varve({"floor", "in.####.exr", "-o", "copy/in.####.exr"}, folder.path()).code, 0);
   const Outcome same = run_varve({"compare", "in.####.exr", "copy/in.####.exr", "-c", "all"}, folder.path());
   EXPECT_EQ(same.code, 0) << same.out << same.err;
-  EXPECT_EQ(run_varve({"floor", "in.####.exr", "-o", "in.####.exr"}, folder.path()).code, 5);
+  EXPECT_EQ(run_varve({"floor", "in.####.exr", "-o", "in.####.exr"}, folder.path()).code, 2);
 }
 
 }  // namespace
