@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "measure_sequence.h"
+#include "stages/measurement.h"
 
 namespace varve {
 

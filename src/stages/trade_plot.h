@@ -1,8 +1,8 @@
 // Error against time as a picture.
 #pragma once
 
-#include "measure_sequence.h"
 #include "stages/drawing.h"
+#include "stages/measurement.h"
 
 namespace varve {
 
