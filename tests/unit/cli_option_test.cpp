@@ -30,7 +30,7 @@ Settings resolved(Arguments arguments) {
 /// The sentence of a refused command line; "" when it is accepted.
 std::string refusal(const std::string& command, const Arguments& arguments) {
   try {
-    parse_line(command, arguments);
+    parse_line(command.c_str(), arguments);
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ExitCode::usage);
     return failure.what();
