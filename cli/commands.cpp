@@ -107,6 +107,31 @@ std::vector<Command> command_table() {
         {"varve compare ref.####.exr out.####.exr --metrics fast --json -", "Figures for a script, quickly."}},
        side_pattern(
            [](auto& s) -> auto& { return s.compare.b; }, "the sequence to judge, such as out.####.exr")},
+      {"measure",
+       kMeasure,
+       "IN",
+       "show what accuracy costs on a sequence",
+       "Runs `varve resolve` on IN with presets and swept parameters, several times in turns, and prints what each "
+       "setting costs (whole runs of the program: time per frame, peak memory, and the ratio to reading and writing "
+       "alone) and how right it is. Settings that no other one beats in both are marked; the last lines are the "
+       "cheapest setting close to the best, as a command line to copy.\n"
+       "With --reference the scores are those of `varve compare`. Without it each resolved frame is brought along "
+       "the motion and held against the samples of the next one, which had no part in it. The noise of the samples is "
+       "in that score, so it ranks settings and does not "
+       "tell how wrong they are.\n"
+       "The time to read and write alone is that of `varve floor`, which copies IN, decoded and encoded again, without "
+       "resolving anything.",
+       input_pattern(),
+       run_measure,
+       true,
+       {{"varve measure shot.####.exr --sweep gamma=0.75,1,1.5 --sweep alpha=0.05,0.1",
+         "Which of six settings is worth its time on this shot?"},
+        {"varve measure shot.####.exr --reference ref.####.exr --setting 'box=none' --csv trade.csv --plot trade.svg",
+         "Against a reference, with a table and a plot."}}},
+      {"floor", kFloor, "IN", "copy a sequence as a resolve reads and writes it, for measure",
+       "Reads the frames of IN and writes them with the same channels and compression, decoded and encoded again, and "
+       "resolves nothing: the least time that any resolve can take.",
+       input_pattern(), run_floor},
       {"synth",
        kSynth,
        "SCENE",

@@ -152,6 +152,8 @@ std::string command_page(const Command& command) {
     out += topic_sections({"aovs", "rejection", "conventions", "presets", "exit-codes"}) + files_section();
   else if (command.bit == kCompare)
     out += topic_sections({"metrics", "conventions", "exit-codes"});
+  else if (command.bit == kMeasure)
+    out += topic_sections({"presets", "metrics", "conventions", "exit-codes"});
   else if (command.bit == kSynth)
     out += topic_sections({"scenes", "exit-codes"});
   else

@@ -87,7 +87,11 @@ Parsed Reader::read() {
   if (parsed_.help) return parsed_;
   // A preset lies under the options that were given by name, whatever the order on the line.
   std::ranges::stable_partition(given_, [](const Given& given) { return given.option->first; });
-  for (const Given& given : given_) set(given.option->value, dashed(*given.option), given.value);
+  for (const Given& given : given_) {
+    set(given.option->value, dashed(*given.option), given.value);
+    parsed_.settings.given.emplace_back(
+        given.option->commands, dashed(*given.option) + (given.option->metavar.empty() ? "" : "=" + given.value));
+  }
   apply_positionals();
   return parsed_;
 }

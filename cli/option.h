@@ -13,7 +13,16 @@
 namespace varve::cli {
 
 /// Commands as bits, so that an option can belong to several.
-enum CommandBit : unsigned { kResolve = 1, kProbe = 2, kHelp = 4, kVersion = 8, kCompare = 16, kSynth = 32 };
+enum CommandBit : unsigned {
+  kResolve = 1,
+  kProbe = 2,
+  kHelp = 4,
+  kVersion = 8,
+  kCompare = 16,
+  kSynth = 32,
+  kMeasure = 64,
+  kFloor = 128
+};
 
 /// What completion offers for a value that is not one of a few words.
 enum class Completes { nothing, files, folders };

@@ -1,12 +1,13 @@
 // THE table of options. Names, ranges and texts of the parameters come from knobs().
 #include "compare_options.h"
+#include "measure_options.h"
 #include "option_values.h"
 #include "synth_options.h"
 
 namespace varve::cli {
 namespace {
 
-constexpr unsigned kBoth = kResolve | kProbe, kEach = kBoth | kCompare;
+constexpr unsigned kInput = kResolve | kProbe | kMeasure | kFloor, kEach = kInput | kCompare;
 
 constexpr Word<bool> kKeeps[] = {
     {"all", true, "other channels and parts pass through, bit for bit"},
@@ -53,7 +54,7 @@ constexpr auto kBasic = Tier::basic, kAdvanced = Tier::advanced, kExpert = Tier:
 void add_file_options(std::vector<Option>& rows) {
   const std::string group = "Input and output";
   const auto add = [&rows](Option option) -> Option& { return rows.emplace_back(std::move(option)); };
-  add({"output", 'o', "PATTERN", kResolve, kBasic, group, "Files to write, never the input itself. Required.",
+  add({"output", 'o', "PATTERN", kResolve | kFloor, kBasic, group, "Files to write, never the input itself. Required.",
        pattern([](auto& s) -> auto& { return s.job.output; })})
       .completes = Completes::files;
   add({"frames", 'f', "LIST", kEach, kBasic, group,
@@ -62,7 +63,7 @@ void add_file_options(std::vector<Option>& rows) {
   add({"preroll", 0, "FRAMES", kResolve, kAdvanced, group,
        "Frames read before the first one written, so that a chunk of a shot starts with history. 0 starts without.",
        number([](auto& s) -> auto& { return s.job.preroll; }, {0, 100000})});
-  add({"cuts", 0, "LIST", kResolve | kCompare, kBasic, group, "First frames of new shots; history does not cross them.",
+  add({"cuts", 0, "LIST", kEach & ~kProbe, kBasic, group, "First frames of new shots; history does not cross them.",
        frames([](auto& s) -> auto& { return s.job.cuts; })});
   add({"resume", 0, "", kResolve, kBasic, group,
        "Skip frames whose output is complete and was made with the same parameters from the same frames. Frames that "
@@ -91,19 +92,19 @@ void add_channel_options(std::vector<Option>& rows) {
            },
            "all, or names of layers with commas between")})
       .repeats = true;
-  add({"map", 0, "ROLE=CHANNEL", kBoth, kAdvanced, group,
+  add({"map", 0, "ROLE=CHANNEL", kInput, kAdvanced, group,
        "Name the channel of a role, where its name does not tell. motion leads to the previous frame, forward to the "
        "next.",
        map_value()})
       .repeats = true;
-  add({"depth-file", 0, "PATTERN", kBoth, kAdvanced, group, "Files with the depth, where it is not in IN.",
+  add({"depth-file", 0, "PATTERN", kInput, kAdvanced, group, "Files with the depth, where it is not in IN.",
        pattern([](auto& s) -> auto& { return s.depth_files; })})
       .completes = Completes::files;
   add({"motion-file", 0, "PATTERN", kEach, kAdvanced, group,
        "Files with the motion vectors, where they are not beside the color.",
        pattern([](auto& s) -> auto& { return s.motion_files; })})
       .completes = Completes::files;
-  add({"jitter", 0, "SOURCE", kBoth, kAdvanced, group,
+  add({"jitter", 0, "SOURCE", kInput, kAdvanced, group,
        "Where in its pixel each frame was sampled. auto reads the header; a CSV file has the columns frame,jx,jy, "
        "sample "
        "position minus pixel center in pixels, y down.",
@@ -167,7 +168,7 @@ void add_parameter_options(std::vector<Option>& rows) {
   rows.back().topic = "presets";
   for (const Knob& knob : knobs()) {
     // What says how to read the input matters to probe as well.
-    const unsigned commands = knob.name == "depth-kind" ? kBoth : unsigned(kResolve);
+    const unsigned commands = knob.name == "depth-kind" ? kInput : unsigned(kResolve);
     rows.push_back({std::string(knob.name), 0, std::string(knob.metavar), commands, knob.tier, std::string(knob.group),
                     std::string(knob.meaning), knob_value(knob)});
   }
@@ -237,7 +238,7 @@ void add_run_options(std::vector<Option>& rows) {
   add({"progress", 0, "STYLE", kResolve, kBasic, group, "How progress is told, on standard error.",
        word(
            [](auto& s) -> auto& { return s.progress; }, kProgressStyles)});
-  add({"quiet", 'q', "", kResolve | kSynth, kBasic, group, "No progress, no warnings, no summary.",
+  add({"quiet", 'q', "", kResolve | kSynth | kMeasure, kBasic, group, "No progress, no warnings, no summary.",
        flag([](auto& s) -> auto& { return s.quiet; })});
   add({"verbose", 'v', "", kResolve, kBasic, group, "Print the plan before the work starts.",
        flag([](auto& s) -> auto& { return s.verbose; })});
@@ -267,6 +268,7 @@ std::vector<Option> option_table() {
   add_diagnostic_options(rows);
   add_color_options(rows);
   add_compare_options(rows);
+  add_measure_options(rows);
   add_run_options(rows);
   add_help_options(rows);
   return rows;

@@ -3,8 +3,11 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "compare_sequence.h"
+#include "measure_sequence.h"
 #include "resolve_sequence.h"
 #include "synth_sequence.h"
 
@@ -27,6 +30,12 @@ struct Settings {
   RoleRequest only_a, only_b;  ///< layers and mapped channels of one side
   std::string json_file, csv_file, html_file;
   SynthJob synth;
+
+  MeasureJob measure;  ///< shares input, frames, cuts, roles and threads with `job`
+  std::vector<std::string> presets, sweeps, singles;
+  std::string plot_file;
+  /// Every option as it was given, "--name=value": what measure hands on to the runs of resolve.
+  std::vector<std::pair<unsigned, std::string>> given;  ///< with the commands that know it
 
   std::string topic;  ///< what help is asked about; empty: the program
   bool all = false, man = false;

@@ -45,6 +45,8 @@ constexpr Metric kMetrics[] = {
      "Mean difference between FLIP of B against its frame before and FLIP of A against its frame before."},
     {MetricId::ghost, "ghost", "share", kDown, kPair, false,
      "Share of A's frame before, unmoved, that shows in B: 0 none, 1 nothing else."},
+    {MetricId::sharpness, "sharpness", "share", kUp, kFrame, false,
+     "Share of A's gradients that B has: 1 as sharp, less is blurred, more is sharpened."},
     {MetricId::lag, "lag", "frames", kDown, kSequence, false, "Mean age of what B shows after a cut of --cuts."},
     {MetricId::half_life, "half-life", "frames", kDown, kSequence, false,
      "Frames until half of what was there before a cut has gone."},

@@ -30,6 +30,7 @@ enum class MetricId {
   spectrum,
   tflip,
   ghost,
+  sharpness,
   lag,
   half_life,
   mtf50,

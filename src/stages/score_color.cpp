@@ -112,6 +112,11 @@ MetricValues ColorScore::add(ColorPair pair, const Plane<glm::vec2>& motion, Ste
   error_ += error;
   measure_flips(pair, values, workers);
   measure_edge(pair, values);
+  if (wants(MetricId::sharpness)) {
+    const Sharpness sharpness = sharpness_of(pair, workers);
+    values[MetricId::sharpness] = sharpness.share();
+    sharpness_ += sharpness;
+  }
   const bool starts = !before_ || step != Step::follows;
   if (!starts) measure_change(pair, motion, values, workers);
   if (wants(MetricId::bias) || wants(MetricId::flicker)) split_.add(pair, workers);
@@ -137,6 +142,7 @@ MetricValues ColorScore::sequence(Workers& workers) const {
   values[MetricId::spectrum] = spectrum_.fast_share(workers);
   values[MetricId::tflip] = tflip_.value();
   values[MetricId::ghost] = ghost_.coefficient();
+  values[MetricId::sharpness] = sharpness_.share();
   ColorScore::Mean lag = lag_, half_life = half_life_;
   if (shares_.size() >= 2) {
     const Lag last = lag_of(shares_);

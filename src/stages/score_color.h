@@ -8,6 +8,7 @@
 #include "diagnose/color_error.h"
 #include "diagnose/ghost.h"
 #include "diagnose/metric.h"
+#include "diagnose/sharpness.h"
 #include "diagnose/temporal_spectrum.h"
 #include "diagnose/warped_residual.h"
 #include "plan/compare_job.h"
@@ -49,6 +50,7 @@ class ColorScore {
   TemporalSpectrum spectrum_;
   WarpedResidual warped_;
   Ghost ghost_;
+  Sharpness sharpness_;
   std::optional<ColorPair> before_;
   Plane<glm::vec4> stale_;  ///< reference before the last cut
   Plane<std::uint8_t> stale_bad_;

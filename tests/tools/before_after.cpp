@@ -2,9 +2,7 @@
 // Crops of several images side by side, magnified without filtering, one row per crop and a label over each column.
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -12,26 +10,18 @@
 #include "base/plane.h"
 #include "exr/pictures.h"
 #include "read_rgb.h"
+#include "stages/bitmap_font.h"
 
 namespace {
 
 constexpr int kGap = 6, kLetter = 3, kLabel = 7 * kLetter;  // output pixels; a letter is 3x5 cells
 constexpr glm::vec4 kPaper(0.01f, 0.01f, 0.01f, 1.f), kInk(0.9f, 0.9f, 0.9f, 1.f);
 
-// One octal digit per row, top first; its bits are the cells, left first.
-const std::map<char, int> kLetters = {
-    {'A', 025755}, {'B', 065656}, {'C', 034443}, {'D', 065556}, {'E', 074647}, {'F', 074644}, {'G', 034553},
-    {'H', 055755}, {'I', 072227}, {'J', 011152}, {'K', 055655}, {'L', 044447}, {'M', 057755}, {'N', 075555},
-    {'O', 025552}, {'P', 065644}, {'Q', 025563}, {'R', 065655}, {'S', 034216}, {'T', 072222}, {'U', 055557},
-    {'V', 055552}, {'W', 055775}, {'X', 055255}, {'Y', 055222}, {'Z', 071247}};
-
 void draw_label(varve::Plane<glm::vec4>& picture, int x0, const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto letter = kLetters.find(char(std::toupper(static_cast<unsigned char>(text[i]))));
-    if (letter == kLetters.end()) continue;
     for (int y = 0; y < 5 * kLetter; ++y)
       for (int x = 0; x < 3 * kLetter; ++x)
-        if (letter->second >> (3 * (4 - y / kLetter) + 2 - x / kLetter) & 1) {
+        if (varve::glyph_cell(text[i], x / kLetter, y / kLetter)) {
           const int px = x0 + int(i) * 4 * kLetter + x;
           if (picture.window().contains(px, y + kLetter)) picture.at(px, y + kLetter) = kInk;
         }

@@ -28,9 +28,9 @@ Settings resolved(Arguments arguments) {
 }
 
 /// The sentence of a refused command line; "" when it is accepted.
-std::string refusal(const char* command, const Arguments& arguments) {
+std::string refusal(const std::string& command, const Arguments& arguments) {
   try {
-    parse_line(command, arguments);
+    parse_line(command.c_str(), arguments);
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ExitCode::usage);
     return failure.what();
@@ -47,11 +47,10 @@ bool takes_numbers(const Option& option) {
   return option.value.allowed.starts_with("a number") || option.value.allowed.starts_with("a whole number");
 }
 
-const char* command_of(const Option& option) {
-  if (option.commands & kResolve) return "resolve";
-  if (option.commands & kProbe) return "probe";
-  if (option.commands & kSynth) return "synth";
-  return (option.commands & kCompare) ? "compare" : "help";
+std::string command_of(const Option& option) {
+  for (const Command& command : command_table())
+    if (option.commands & command.bit) return std::string(command.name);
+  return "help";
 }
 
 TEST(OptionTable, NamesAndLettersAreUniqueWithinACommand) {
