@@ -7,22 +7,14 @@
 #include <set>
 
 #include "base/error.h"
+#include "support/refusal.h"
 
 namespace varve {
 namespace {
 
 const std::string kData = VARVE_DATA;
 
-std::string message_of(const std::function<void()>& call, ExitCode expected = ExitCode::inconsistent) {
-  try {
-    call();
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), expected) << failure.what();
-    return failure.what();
-  }
-  ADD_FAILURE() << "nothing was refused";
-  return "";
-}
+using test::message_of;
 
 Part part_of(const std::vector<std::string>& channels, const std::string& name = "", const std::string& view = "") {
   Part part;

@@ -8,22 +8,14 @@
 #include <limits>
 
 #include "base/error.h"
+#include "support/refusal.h"
 
 namespace varve {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-std::string message_of(const std::function<void()>& call, ExitCode expected) {
-  try {
-    call();
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), expected) << failure.what();
-    return failure.what();
-  }
-  ADD_FAILURE() << "nothing was refused";
-  return "";
-}
+using test::message_of;
 
 Part part_with(std::vector<Attribute> attributes) {
   Part part;

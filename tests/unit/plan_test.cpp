@@ -8,20 +8,12 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "plan/describe.h"
+#include "support/refusal.h"
 
 namespace varve {
 namespace {
 
-std::string message_of(const std::function<void()>& call, ExitCode expected = ExitCode::inconsistent) {
-  try {
-    call();
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), expected) << failure.what();
-    return failure.what();
-  }
-  ADD_FAILURE() << "nothing was refused";
-  return "";
-}
+using test::message_of;
 
 // A sequence of `frames` frames, one part, `size` x `size` pixels, half channels.
 SequenceInfo sequence(const std::vector<std::string>& channels, int frames = 3, int size = 1000, bool jitter = false) {

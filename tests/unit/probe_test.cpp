@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "plan/describe.h"
+#include "support/refusal.h"
 
 namespace varve {
 namespace {
@@ -22,16 +23,7 @@ const std::string kData = VARVE_DATA;
 #define NEED_DATA() \
   if (!fs::exists(kData)) GTEST_SKIP() << "no development data"
 
-std::string message_of(const std::function<void()>& call, ExitCode expected) {
-  try {
-    call();
-  } catch (const Failure& failure) {
-    EXPECT_EQ(failure.code(), expected) << failure.what();
-    return failure.what();
-  }
-  ADD_FAILURE() << "nothing was refused";
-  return "";
-}
+using test::message_of;
 
 InputSequence input_of(const std::string& text) { return {SequencePattern::parse(text), {}}; }
 
