@@ -6,8 +6,8 @@
 namespace varve {
 
 /// Mean and spread over time of the error b - a of each pixel and component. Per pixel
-/// mean_t e^2 = (mean_t e)^2 + var_t e: the first is blur, ghosts and bias, the second flicker. Memory: 64 bytes a pixel.
-/// Windows must stay the same; one that differs starts anew and adds what was gathered.
+/// mean_t e^2 = (mean_t e)^2 + var_t e: the first is blur, ghosts and bias, the second flicker. Memory: 64 bytes a
+/// pixel. Windows must stay the same; one that differs starts anew and adds what was gathered.
 class BiasFlicker {
  public:
   void add(const ColorPair& pair, Workers& workers);

@@ -18,8 +18,9 @@ InputBytes::InputBytes(const std::string& path) : path_(path) {
     descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   } while (descriptor_ < 0 && errno == EINTR);
   if (descriptor_ < 0)
-    throw Failure(ExitCode::input, "cannot open '" + path + "': " + std::strerror(errno) +
-                                       (errno == ENOENT ? "; check the name, or leave the frame out with --frames" : ""));
+    throw Failure(ExitCode::input,
+                  "cannot open '" + path + "': " + std::strerror(errno) +
+                      (errno == ENOENT ? "; check the name, or leave the frame out with --frames" : ""));
   measure();
 }
 
