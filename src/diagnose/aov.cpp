@@ -18,7 +18,8 @@ constexpr Aov kAovs[] = {
      "Weight of the history in the output pixel; the present has the rest."},
     {"prediction", "rgb", PixelType::float32, "scene-linear", "any", "viridis", 0, 1,
      "What the frames before say this pixel is: the history rectified without the pixel itself, nothing of the present "
-     "blended in. 0 where there is no history. Its difference to the input ranks settings where no reference exists."},
+     "blended in. 0 where there is no history. It follows its neighbors, which share the jitter of the pixel: to rank "
+     "settings use varve measure."},
     {"repaired", "", PixelType::float32, "flag", "0 or 1", "inferno", 0, 1,
      "1 where the input color was not finite and something else stands in the output."},
 };

@@ -81,9 +81,9 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
                        const DiagnosticsWanted& wanted, Workers& workers, Isa isa = Isa::automatic);
 
 /// What the frames before say of the present: the history as accumulate() would fetch it, rectified by the neighborhood
-/// without the pixel itself and towards its mean, so that nothing of the sample it is held against is in it.
-/// color is 0 and total 0 where there is no history. Comparing it with the samples of the present ranks settings
-/// without a reference: the expected squared difference is the error of the prediction plus the noise of the sample.
+/// without the pixel itself and towards its mean. color is 0 and total 0 where there is no history.
+/// The sample of the pixel has no part in it, but its neighbors do, and a jittered frame shifts all its samples alike:
+/// the difference to the sample favors tight boxes. For ranking settings see diagnose/leave_out.h.
 History predict(const Present& present, const History& previous, const RecursiveParameters& recursive,
                 const RectifyParameters& rectify, Workers& workers);
 
