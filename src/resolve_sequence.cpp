@@ -116,27 +116,6 @@ void check_same_subjects(const FrameHeaders& first, const FrameHeaders& now, con
   }
 }
 
-/// Channels of one file that this frame's output and passes need; parts without a resolved color are copied unread.
-std::vector<ChannelRef> channels_to_read(const Setup& s, const FrameHeaders& headers, int file) {
-  std::vector<ChannelRef> wanted;
-  const auto add = [&](ChannelRef ref) {
-    if (ref.file == file && std::find(wanted.begin(), wanted.end(), ref) == wanted.end()) wanted.push_back(ref);
-  };
-  for (const Subject& subject : headers.subjects) {
-    for (const auto& color : subject.color)
-      if (color) add(*color);
-    if (s.plan.use_depth && subject.depth) add(*subject.depth);
-    const auto& vectors = subject.backward ? subject.backward : subject.forward;
-    if (s.plan.use_motion && vectors) add((*vectors)[0]), add((*vectors)[1]);
-    if (s.job.request.keep_channels && file == 0) {
-      const int part = part_of(subject);
-      const Part& p = headers.files.front().parts[std::size_t(part)];
-      for (int c = 0; c < int(p.channels.size()); ++c) add({0, part, c});
-    }
-  }
-  return wanted;
-}
-
 /// Names the frame in what a stage has to say: file names alone need not tell it.
 template <typename Work>
 auto in_frame(int frame, Work work) {
@@ -145,13 +124,6 @@ auto in_frame(int frame, Work work) {
   } catch (const Failure& failure) {
     throw Failure(failure.code(), "frame " + std::to_string(frame) + ": " + failure.what());
   }
-}
-
-FileSet read_pixels(const Setup& s, const FrameHeaders& headers, Workers& workers) {
-  FileSet pixels;
-  for (int file = 0; file < int(headers.files.size()); ++file)
-    pixels.push_back(read_channels(headers.files[std::size_t(file)], channels_to_read(s, headers, file), workers));
-  return pixels;
 }
 
 /// A finished frame is read again only where a later one needs its history.
@@ -244,6 +216,7 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
 
   Workers workers(job.threads);
   std::vector<SubjectState> states(s.info.first.subjects.size());
+  const ChannelNeeds needs{s.plan.use_depth, s.plan.use_motion, job.request.keep_channels};
   ResolveSummary summary;
   int total = 0, done = 0;
   for (const ScheduledFrame& scheduled : schedule) total += scheduled.write;
@@ -270,7 +243,7 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     Stopwatch clock;
     const FrameHeaders headers = read_frame_headers(job.input, scheduled.frame, job.roles, s.jitter);
     check_same_subjects(s.info.first, headers, s.plan);
-    FileSet pixels = in_frame(scheduled.frame, [&] { return read_pixels(s, headers, workers); });
+    FileSet pixels = in_frame(scheduled.frame, [&] { return read_files(headers, needs, workers); });
     report.read_seconds = clock.lap();
     if (stop()) break;
 

@@ -52,7 +52,34 @@ Plane<glm::vec4> read_color(const Subject& subject, const FileSet& files, const 
   return color;
 }
 
+std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const ChannelNeeds& needs, int file) {
+  std::vector<ChannelRef> wanted;
+  const auto add = [&](ChannelRef ref) {
+    if (ref.file == file && std::find(wanted.begin(), wanted.end(), ref) == wanted.end()) wanted.push_back(ref);
+  };
+  for (const Subject& subject : headers.subjects) {
+    for (const auto& color : subject.color)
+      if (color) add(*color);
+    if (needs.depth && subject.depth) add(*subject.depth);
+    const auto& vectors = subject.backward ? subject.backward : subject.forward;
+    if (needs.motion && vectors) add((*vectors)[0]), add((*vectors)[1]);
+    if (needs.whole_parts && file == 0) {
+      const int part = part_of(subject);
+      const std::size_t channels = headers.files.front().parts[std::size_t(part)].channels.size();
+      for (int channel = 0; channel < int(channels); ++channel) add({0, part, channel});
+    }
+  }
+  return wanted;
+}
+
 }  // namespace
+
+FileSet read_files(const FrameHeaders& headers, const ChannelNeeds& needs, Workers& workers) {
+  FileSet pixels;
+  for (int file = 0; file < int(headers.files.size()); ++file)
+    pixels.push_back(read_channels(headers.files[std::size_t(file)], channels_to_read(headers, needs, file), workers));
+  return pixels;
+}
 
 Plane<glm::vec2> read_vectors(const VectorChannels& channels, const MotionEncoding& encoding, const FileSet& files,
                               const Window& window, const Window& display_window, double max_length,

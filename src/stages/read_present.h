@@ -7,12 +7,22 @@
 #include "exr/color_space.h"
 #include "exr/read_frame.h"
 #include "motion/motion.h"
+#include "plan/probe.h"
 #include "resolve/present.h"
 
 namespace varve {
 
 /// Pixels of a frame, one entry per file (FrameHeaders::files).
 using FileSet = std::vector<FramePixels>;
+
+/// What of a frame's files is read besides the colors of its subjects. Parts without a subject's color never are.
+struct ChannelNeeds {
+  bool depth = false, motion = false;
+  bool whole_parts = false;  ///< every channel of the parts that hold a color
+};
+
+/// Reads what a frame needs, each channel once. Throws what read_channels throws.
+FileSet read_files(const FrameHeaders& headers, const ChannelNeeds& needs, Workers& workers);
 
 /// What reading one subject leaves to the next frame: needed where only forward vectors are in the file.
 struct ForwardMemory {
