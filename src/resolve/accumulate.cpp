@@ -46,12 +46,20 @@ Plane<glm::vec4> rotate_to_ycocg(const Plane<glm::vec4>& color, Workers& workers
   return out;
 }
 
-void (*kernel_for(Isa isa))(const AccumulateView&, int, const RowScratch&, RowCounts&) {
+/// The steps of a row, as compiled for one processor.
+struct RowKernel {
+  decltype(&baseline::fetch_history) fetch_history;
+  decltype(&baseline::rectify_history) rectify_history;
+  decltype(&baseline::blend_present) blend_present;
+};
+
+RowKernel kernel_for(Isa isa) {
 #ifdef VARVE_HAVE_AVX2
-  if (isa != Isa::baseline && __builtin_cpu_supports("avx2")) return avx2::accumulate_row;
+  if (isa != Isa::baseline && __builtin_cpu_supports("avx2"))
+    return {avx2::fetch_history, avx2::rectify_history, avx2::blend_present};
 #endif
   (void)isa;
-  return baseline::accumulate_row;
+  return {baseline::fetch_history, baseline::rectify_history, baseline::blend_present};
 }
 
 /// Row buffers of one worker.
@@ -155,7 +163,7 @@ void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const
 }
 
 AccumulateCounts run_rows(const AccumulateView& v, Isa isa, Workers& workers) {
-  const auto kernel = kernel_for(isa);
+  const RowKernel kernel = kernel_for(isa);
   std::vector<Scratch> scratch;
   for (int i = 0; i < workers.count(); ++i) scratch.emplace_back(v.width);
   std::vector<RowCounts> counts(std::size_t(workers.count()));
@@ -163,7 +171,11 @@ AccumulateCounts run_rows(const AccumulateView& v, Isa isa, Workers& workers) {
   workers.for_each(std::size_t((v.height + kBand - 1) / kBand), [&](std::size_t band, int worker) {
     const RowScratch rows = scratch[std::size_t(worker)].view();
     const int end = std::min(v.height, int(band + 1) * kBand);
-    for (int y = int(band) * kBand; y < end; ++y) kernel(v, y, rows, counts[std::size_t(worker)]);
+    for (int y = int(band) * kBand; y < end; ++y) {
+      kernel.fetch_history(v, y, rows);
+      kernel.rectify_history(v, y, rows, counts[std::size_t(worker)]);
+      kernel.blend_present(v, y, rows, counts[std::size_t(worker)]);
+    }
   });
   AccumulateCounts sum;
   for (const RowCounts& c : counts) {

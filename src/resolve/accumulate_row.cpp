@@ -1,4 +1,4 @@
-// One row of the recursive accumulator: fetch, rectify, blend. Compiled once per processor (VARVE_ISA).
+// The steps of one row of the recursive accumulator: fetch, rectify, blend. Compiled once per processor (VARVE_ISA).
 #include "resolve/accumulate_row.h"
 
 #include "resolve/fetch_history.h"
@@ -10,24 +10,6 @@ namespace {
 template <HistoryFilter filter>
 void fetch_row(const AccumulateView& v, int y, const RowScratch& s) {
   for (int x = 0; x < v.width; ++x) fetch_pixel<filter>(v, x, y, s);
-}
-
-void fetch_history(const AccumulateView& v, int y, const RowScratch& s) {
-  if (v.history_width == 0) {
-    for (int x = 0; x < v.width; ++x) s.total[x] = 0, s.reject[x] = v.restart_bit;
-    return;
-  }
-  for (int x = 0; x < v.width; ++x) s.reject[x] = 0;
-  switch (v.filter) {
-    case HistoryFilter::bilinear:
-      return fetch_row<HistoryFilter::bilinear>(v, y, s);
-    case HistoryFilter::catmull_rom:
-      return fetch_row<HistoryFilter::catmull_rom>(v, y, s);
-    case HistoryFilter::catmull_rom9:
-      return fetch_row<HistoryFilter::catmull_rom9>(v, y, s);
-    case HistoryFilter::catmull_rom5:
-      return fetch_row<HistoryFilter::catmull_rom5>(v, y, s);
-  }
 }
 
 template <Box kind, int r, bool masked>
@@ -57,21 +39,6 @@ void rectify_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts&
   if (v.radius == 1) return rectify_row<kind, 1>(v, y, s, counts);
   if (v.radius == 2) return rectify_row<kind, 2>(v, y, s, counts);
   rectify_row<kind, 3>(v, y, s, counts);
-}
-
-void rectify(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
-  switch (v.box) {
-    case Box::none:
-      if (v.out_clip.origin)
-        for (int x = 0; x < v.width; ++x) v.out_clip.origin[y * v.out_clip.stride + x] = 0;
-      return;
-    case Box::minmax:
-      return rectify_row<Box::minmax>(v, y, s, counts);
-    case Box::variance:
-      return rectify_row<Box::variance>(v, y, s, counts);
-    case Box::variance_minmax:
-      return rectify_row<Box::variance_minmax>(v, y, s, counts);
-  }
 }
 
 /// Weight of the present, in (0, 1]. `total` is the weight of all samples before, `w` that of this one (1 on average).
@@ -126,9 +93,40 @@ void blend_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& c
 
 }  // namespace
 
-void accumulate_row(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts) {
-  fetch_history(view, y, scratch);
-  rectify(view, y, scratch, counts);
+void fetch_history(const AccumulateView& v, int y, const RowScratch& s) {
+  if (v.history_width == 0) {
+    for (int x = 0; x < v.width; ++x) s.total[x] = 0, s.reject[x] = v.restart_bit;
+    return;
+  }
+  for (int x = 0; x < v.width; ++x) s.reject[x] = 0;
+  switch (v.filter) {
+    case HistoryFilter::bilinear:
+      return fetch_row<HistoryFilter::bilinear>(v, y, s);
+    case HistoryFilter::catmull_rom:
+      return fetch_row<HistoryFilter::catmull_rom>(v, y, s);
+    case HistoryFilter::catmull_rom9:
+      return fetch_row<HistoryFilter::catmull_rom9>(v, y, s);
+    case HistoryFilter::catmull_rom5:
+      return fetch_row<HistoryFilter::catmull_rom5>(v, y, s);
+  }
+}
+
+void rectify_history(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
+  switch (v.box) {
+    case Box::none:
+      if (v.out_clip.origin)
+        for (int x = 0; x < v.width; ++x) v.out_clip.origin[y * v.out_clip.stride + x] = 0;
+      return;
+    case Box::minmax:
+      return rectify_row<Box::minmax>(v, y, s, counts);
+    case Box::variance:
+      return rectify_row<Box::variance>(v, y, s, counts);
+    case Box::variance_minmax:
+      return rectify_row<Box::variance_minmax>(v, y, s, counts);
+  }
+}
+
+void blend_present(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts) {
   if (view.leave_present_out)
     copy_history(view, y, scratch);
   else

@@ -76,11 +76,16 @@ struct RowScratch {
   std::uint32_t* reject;
 };
 
+// The three steps of a row, in running order. Between them stand row passes that need no processor of their own.
 namespace baseline {
-void accumulate_row(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts);
-}
+void fetch_history(const AccumulateView& view, int y, const RowScratch& scratch);
+void rectify_history(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts);
+void blend_present(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts);
+}  // namespace baseline
 namespace avx2 {
-void accumulate_row(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts);
-}
+void fetch_history(const AccumulateView& view, int y, const RowScratch& scratch);
+void rectify_history(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts);
+void blend_present(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts);
+}  // namespace avx2
 
 }  // namespace varve
