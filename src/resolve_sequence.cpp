@@ -109,9 +109,12 @@ void check_same_subjects(const FrameHeaders& first, const FrameHeaders& now, con
                                                   "; render it again, or leave it out with --frames");
     const bool other_vectors =
         a.backward.has_value() != b.backward.has_value() || a.forward.has_value() != b.forward.has_value();
-    if ((plan.use_motion && other_vectors) || (plan.use_depth && a.depth.has_value() != b.depth.has_value()))
+    const bool other_marks = (plan.use_id && a.id.has_value() != b.id.has_value()) ||
+                             (plan.use_normal && a.normal.has_value() != b.normal.has_value());
+    if ((plan.use_motion && other_vectors) || (plan.use_depth && a.depth.has_value() != b.depth.has_value()) ||
+        other_marks)
       throw Failure(ExitCode::inconsistent,
-                    where + ", " + layer + ": its depth or motion channels are not those of frame " +
+                    where + ", " + layer + ": its depth, motion, id or normal channels are not those of frame " +
                         std::to_string(first.frame) + "; render it again, or leave it out with --frames");
   }
 }
@@ -147,9 +150,11 @@ Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHead
   const Parameters& parameters = s.job.parameters;
   if (scheduled.restart) state = {};
   Resolved r;
-  r.present = read_present(
-      subject, pixels, part.data_window, part.display_window, {parameters.motion, s.plan.use_depth, s.plan.use_motion},
-      s.into_working_space ? &*s.into_working_space : nullptr, state.forward, report.vectors_bad, workers);
+  r.present =
+      read_present(subject, pixels, part.data_window, part.display_window,
+                   {parameters.motion, s.plan.use_depth, s.plan.use_motion, s.plan.use_id, s.plan.use_normal,
+                    s.plan.use_reactive, s.plan.use_responsive},
+                   s.into_working_space ? &*s.into_working_space : nullptr, state.forward, report.vectors_bad, workers);
   std::optional<glm::dvec2> jitter;
   if (headers.jitter) jitter = glm::dvec2(headers.jitter->x, headers.jitter->y);
   const std::uint32_t restart_bit = scheduled.restart_reason == "first frame" ? kRejectFirstFrame : kRejectCut;
@@ -216,7 +221,8 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
 
   Workers workers(job.threads);
   std::vector<SubjectState> states(s.info.first.subjects.size());
-  const ChannelNeeds needs{s.plan.use_depth, s.plan.use_motion, job.request.keep_channels};
+  const ChannelNeeds needs{s.plan.use_depth,  s.plan.use_motion,   job.request.keep_channels, s.plan.use_id,
+                           s.plan.use_normal, s.plan.use_reactive, s.plan.use_responsive};
   ResolveSummary summary;
   int total = 0, done = 0;
   for (const ScheduledFrame& scheduled : schedule) total += scheduled.write;

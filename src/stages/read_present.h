@@ -19,6 +19,7 @@ using FileSet = std::vector<FramePixels>;
 struct ChannelNeeds {
   bool depth = false, motion = false;
   bool whole_parts = false;  ///< every channel of the parts that hold a color
+  bool id = false, normal = false, reactive = false, responsive = false;
 };
 
 /// Reads what a frame needs, each channel once. Throws what read_channels throws.
@@ -35,6 +36,7 @@ struct ReadOptions {
   MotionParameters motion;
   bool use_depth = false;  ///< depth is decoded and kept with the present
   bool use_motion = false;
+  bool use_id = false, use_normal = false, use_reactive = false, use_responsive = false;  ///< likewise
 };
 
 /// Converts one subject. `into_working_space` may be null. `memory` holds the previous frame's forward vectors where
