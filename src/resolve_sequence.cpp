@@ -107,6 +107,16 @@ void check_same_subjects(const FrameHeaders& first, const FrameHeaders& now, con
                                                   (b.color[k] ? "there" : "missing") + " but not so in frame " +
                                                   std::to_string(first.frame) +
                                                   "; render it again, or leave it out with --frames");
+    const auto same_places = [](const Companion& c, const Companion& d) {
+      for (std::size_t k = 0; k < 4; ++k)
+        if (c.channels[k].has_value() != d.channels[k].has_value()) return false;
+      return c.layer == d.layer && c.color == d.color;
+    };
+    if (!std::equal(a.companions.begin(), a.companions.end(), b.companions.begin(), b.companions.end(), same_places))
+      throw Failure(ExitCode::inconsistent,
+                    where + ", " + layer + ": what --channels names is not what it is in frame " +
+                        std::to_string(first.frame) +
+                        "; render it again, name other channels, or leave it out with --frames");
     const bool other_vectors =
         a.backward.has_value() != b.backward.has_value() || a.forward.has_value() != b.forward.has_value();
     if ((plan.use_motion && other_vectors) || (plan.use_depth && a.depth.has_value() != b.depth.has_value()))
@@ -146,6 +156,10 @@ Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHead
   const Part& part = headers.files.front().parts[std::size_t(part_of(subject))];
   const Parameters& parameters = s.job.parameters;
   if (scheduled.restart) state = {};
+  if (!subject.companions.empty())
+    throw Failure(
+        ExitCode::inconsistent,
+        "the recursive accumulator resolves --channels by their own weights only; give --channel-weights own");
   Resolved r;
   r.present = read_present(
       subject, pixels, part.data_window, part.display_window, {parameters.motion, s.plan.use_depth, s.plan.use_motion},

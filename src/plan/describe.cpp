@@ -201,6 +201,8 @@ std::string roles_of(const SequenceInfo& info, ChannelRef ref) {
       if (channel && *channel == ref) role.append(role.empty() ? "" : "+").append(name);
     };
     for (std::size_t i = 0; i < 4; ++i) take(s.color[i], kColor[i]);
+    for (const Companion& companion : s.companions)
+      for (const std::optional<ChannelRef>& channel : companion.channels) take(channel, "companion");
     take(s.depth, "depth");
     if (s.backward) take((*s.backward)[0], "motion.x"), take((*s.backward)[1], "motion.y");
     if (s.forward) take((*s.forward)[0], "forward.x"), take((*s.forward)[1], "forward.y");

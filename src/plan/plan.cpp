@@ -186,6 +186,8 @@ class Planner {
     };
     for (const Subject& subject : info_.first.subjects) {
       for (const std::optional<ChannelRef>& channel : subject.color) read(channel);
+      for (const Companion& companion : subject.companions)
+        for (const std::optional<ChannelRef>& channel : companion.channels) read(channel);
       if (plan_.use_depth) read(subject.depth);
       const std::optional<VectorChannels>& vector = subject.backward ? subject.backward : subject.forward;
       if (vector) read((*vector)[0]), read((*vector)[1]);

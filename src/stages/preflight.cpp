@@ -119,6 +119,9 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   if (!cuts.empty()) text += " cuts=" + format_frame_list(cuts);
   text += " jitter=" + describe_jitter(job.jitter) + " convention=" + job.roles.convention;
   for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
+  for (const std::string& channels : job.roles.channels) text += " channels=" + channels;
+  if (!job.roles.channels.empty())
+    text += std::string(" channel-weights=") + (job.roles.channel_weights == ChannelWeights::own ? "own" : "beauty");
   for (const auto& [role, channel] : job.roles.map) text += " map:" + role + "=" + channel;
   for (const Subject& subject : info.first.subjects) {
     const MotionEncoding& e = subject.backward ? subject.backward_encoding : subject.forward_encoding;
