@@ -12,6 +12,7 @@
 #include "plan/preset.h"
 #include "resolve/accumulate.h"
 #include "stages/frame_window.h"
+#include "stages/gather_frame.h"
 #include "stages/preflight.h"
 #include "stages/previews.h"
 #include "stages/read_present.h"
@@ -24,6 +25,7 @@ namespace {
 struct SubjectState {
   ForwardMemory forward;
   History history;
+  GatherMemory gathered;
 };
 
 /// Made once, used for every frame.
@@ -34,6 +36,7 @@ struct Setup {
   JitterSource jitter;
   std::string parameters, hash;
   FrameReach reach;
+  GatherParameters gather;
   std::vector<const Aov*> aovs;  ///< asked for
   std::optional<ColorConversion> into_working_space, out_of_working_space;
   std::optional<DisplayTransform> display;
@@ -71,7 +74,8 @@ Setup set_up(const ResolveJob& job) {
   SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
   check_roles(job, info);
   Plan plan = make_plan(info, job.parameters, job.request, job.threads);
-  Setup s{job, std::move(info), std::move(plan), jitter, {}, {}, reach_of(job), chosen_aovs(job.request), {}, {}, {}};
+  Setup s{job, std::move(info), std::move(plan), jitter, {}, {}, reach_of(job), job.parameters.gather, chosen_aovs(job.request), {}, {}, {}};
+  s.gather.filter = job.parameters.recursive.sample_filter;
   s.parameters = describe_parameters(job, s.info);
   s.hash = hash_of(s.parameters + describe_side_inputs(job));
   // Around the resolve: from the input's space to scene-linear, and from there to the output's.
@@ -109,6 +113,16 @@ void check_same_subjects(const FrameHeaders& first, const FrameHeaders& now, con
                                                   (b.color[k] ? "there" : "missing") + " but not so in frame " +
                                                   std::to_string(first.frame) +
                                                   "; render it again, or leave it out with --frames");
+    const auto same_places = [](const Companion& c, const Companion& d) {
+      for (std::size_t k = 0; k < 4; ++k)
+        if (c.channels[k].has_value() != d.channels[k].has_value()) return false;
+      return c.layer == d.layer && c.color == d.color;
+    };
+    if (!std::equal(a.companions.begin(), a.companions.end(), b.companions.begin(), b.companions.end(), same_places))
+      throw Failure(ExitCode::inconsistent,
+                    where + ", " + layer + ": what --channels names is not what it is in frame " +
+                        std::to_string(first.frame) +
+                        "; render it again, name other channels, or leave it out with --frames");
     const bool other_vectors =
         a.backward.has_value() != b.backward.has_value() || a.forward.has_value() != b.forward.has_value();
     const bool other_marks = (plan.use_id && a.id.has_value() != b.id.has_value()) ||
@@ -198,6 +212,10 @@ Resolved resolve_recursive(const Setup& s, const FrameHeaders& headers, const Pr
                            const ScheduledFrame& scheduled, SubjectState& state, Workers& workers) {
   const Parameters& parameters = s.job.parameters;
   if (scheduled.restart) state.history = {};
+  if (!present.companions.empty())
+    throw Failure(
+        ExitCode::inconsistent,
+        "the recursive accumulator resolves --channels by their own weights only; give --channel-weights own");
   Resolved r;
   std::optional<glm::dvec2> jitter;
   if (headers.jitter) jitter = glm::dvec2(headers.jitter->x, headers.jitter->y);
@@ -306,7 +324,11 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     // Resolve, subject by subject.
     std::vector<Resolved> resolved;
     for (std::size_t k = 0; k < source.presents.size(); ++k)
-      resolved.push_back(resolve_recursive(s, source.headers, source.presents[k], scheduled, states[k], workers));
+      if (job.parameters.accumulator == Accumulator::gather)
+        resolved.push_back({gather_frame(window, k, i, first, last, s.gather, states[k].gathered,
+                                         diagnostics_wanted(s.aovs), workers), {}});
+      else
+        resolved.push_back(resolve_recursive(s, source.headers, source.presents[k], scheduled, states[k], workers));
     count(report, source, resolved);
     report.resolve_seconds = clock.lap();
     if (stop()) break;

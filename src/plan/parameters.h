@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "gather/gather.h"
 #include "motion/motion.h"
 #include "resolve/accumulate.h"
 
@@ -14,6 +15,7 @@ struct Parameters {
   MotionParameters motion;
   RecursiveParameters recursive;
   RectifyParameters rectify;
+  GatherParameters gather;
 };
 
 }  // namespace varve

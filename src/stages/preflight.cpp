@@ -1,4 +1,5 @@
 #include "stages/preflight.h"
+#include "stages/gather_frame.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -108,7 +109,8 @@ std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const Sequenc
 
 FrameReach reach_of(const ResolveJob& job) {
   if (job.parameters.accumulator == Accumulator::recursive) return {job.preroll, 0, true};
-  return {0, 0, false};
+  const int reach = gather_reach(job.parameters.gather);
+  return {reach, reach, false};
 }
 
 std::pair<std::size_t, std::size_t> span_around(const std::vector<ScheduledFrame>& schedule, std::size_t index,
@@ -140,6 +142,9 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   if (!cuts.empty()) text += " cuts=" + format_frame_list(cuts);
   text += " jitter=" + describe_jitter(job.jitter) + " convention=" + job.roles.convention;
   for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
+  for (const std::string& channels : job.roles.channels) text += " channels=" + channels;
+  if (!job.roles.channels.empty())
+    text += std::string(" channel-weights=") + (job.roles.channel_weights == ChannelWeights::own ? "own" : "beauty");
   for (const auto& [role, channel] : job.roles.map) text += " map:" + role + "=" + channel;
   for (const Subject& subject : info.first.subjects) {
     const MotionEncoding& e = subject.backward ? subject.backward_encoding : subject.forward_encoding;
