@@ -49,6 +49,47 @@ void sort_into_bins(TileArrivals& t) {
   for (std::size_t i = 0; i < t.unsorted.size(); ++i) t.sorted[next[t.bin_of[i]]++] = t.unsorted[i];
 }
 
+constexpr std::size_t kMaxTileSurfaces = 16;
+
+/// Tells the surfaces of a tile apart and fits how each moved. Most tiles show one, and need no fit.
+void fit_surfaces(TileArrivals& t, std::span<const GatherSource> sources, const SurfaceTest& test) {
+  t.surfaces.clear();
+  if (!test.depths) return;
+  std::vector<std::uint8_t>& of = t.surface_of;
+  of.assign(t.sorted.size(), 0);
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < t.sorted.size(); ++i) {
+    const Arrival& a = t.sorted[i];
+    const auto fits = [&](std::size_t k) { return belongs(t.surfaces[k].id, t.surfaces[k].near, t.surfaces[k].far, a, test); };
+    std::size_t k = last;
+    if (!(k < t.surfaces.size() && fits(k))) {
+      k = 0;
+      while (k < t.surfaces.size() && !fits(k)) ++k;
+    }
+    if (k == t.surfaces.size()) {
+      if (k == kMaxTileSurfaces)
+        --k;
+      else
+        t.surfaces.push_back({a.id, a.depth, a.depth, {}});
+    }
+    TileSurface& s = t.surfaces[k];
+    s.near = std::min(s.near, a.depth), s.far = std::max(s.far, a.depth);
+    of[i] = std::uint8_t(k);
+    last = k;
+  }
+  if (t.surfaces.size() < 2) return t.surfaces.clear();
+  for (TileSurface& s : t.surfaces) s.motion.resize(sources.size());
+  for (std::size_t i = 0; i < t.sorted.size(); ++i) {
+    const Arrival& a = t.sorted[i];
+    const GatherSource& source = sources[a.frame];
+    const Window& w = source.window();
+    const int x = w.x0 + int(a.pixel & 0xFFFF), y = w.y0 + int(a.pixel >> 16);
+    const glm::dvec2 moved = glm::dvec2(double(a.x) + t.tile.x0, double(a.y) + t.tile.y0) - source.position(x, y);
+    t.surfaces[of[i]].motion[a.frame].add(glm::dvec2(double(a.x), double(a.y)) - glm::dvec2(kTile / 2), 1,
+                                          {moved, double(source.present->depth.at(x, y))});
+  }
+}
+
 }  // namespace
 
 BlockLists list_blocks(const GatherSource& source, const Carried& field, const TileGrid& grid) {
@@ -116,6 +157,7 @@ void collect_arrivals(const TileGrid& grid, int column, int row, std::span<const
     }
   }
   sort_into_bins(out);
+  fit_surfaces(out, sources, test);
 }
 
 }  // namespace varve

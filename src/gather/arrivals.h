@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "gather/affine_fit.h"
 #include "gather/carry.h"
 
 namespace varve {
@@ -39,6 +40,14 @@ struct TileGrid {
 
 BlockLists list_blocks(const GatherSource& source, const Carried& field, const TileGrid& grid);
 
+/// A surface in and around a tile, and how it moved there from each frame.
+struct TileSurface {
+  std::uint32_t id = 0;
+  float near = 0, far = 0;
+  /// Per frame: x and y as Carried, z the depth in that frame; offsets from the tile's middle.
+  std::vector<AffineFit<glm::dvec3>> motion;
+};
+
 /// What arrives in and around one tile, sorted by bins of a quarter pixel: row by row, within a bin by frame and pixel.
 struct TileArrivals {
   Window tile;
@@ -47,8 +56,11 @@ struct TileArrivals {
   std::vector<Arrival> sorted;
   std::vector<std::uint32_t> begin;  ///< per bin, one more at the end
 
+  std::vector<TileSurface> surfaces;  ///< empty where all is one surface
+
   std::vector<Arrival> unsorted;  // working space
   std::vector<std::uint32_t> bin_of;
+  std::vector<std::uint8_t> surface_of;
 };
 
 /// How much the light of a sample is trusted and what it is multiplied with, where it arrives.
@@ -56,6 +68,12 @@ struct LightRule {
   bool gain = false;
   double dead_zone = 0.1, weight = 0.05;
 };
+
+/// True if an arrival may be of the surface that has this id and these depths.
+inline bool belongs(std::uint32_t id, float near, float far, const Arrival& a, const SurfaceTest& test) {
+  return (!test.ids || id == a.id) &&
+         (test.near(near, a.depth) || test.near(far, a.depth) || (a.depth >= near && a.depth <= far));
+}
 
 /// Fills `out` with what arrives in tile (column, row) of the grid.
 void collect_arrivals(const TileGrid& grid, int column, int row, std::span<const GatherSource> sources,

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "gather/affine_fit.h"
+
 namespace varve {
 namespace {
 
+constexpr int kWidest = 32;  // samples on each side
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
 
 template <class V>
@@ -17,39 +20,6 @@ struct Value<glm::vec2> {
 template <>
 struct Value<glm::vec3> {
   using Wide = glm::dvec3;
-};
-
-/// Weighted affine fit of a field around `at`: value = constant + slope * (position - at), its constant.
-/// The slope is held back a little, so that samples on a line, or a single one, give what they know.
-template <class Wide>
-class AffineFit {
- public:
-  void add(glm::dvec2 d, double weight, const Wide& value) {
-    w_ += weight;
-    x_ += weight * d.x, y_ += weight * d.y;
-    xx_ += weight * d.x * d.x, xy_ += weight * d.x * d.y, yy_ += weight * d.y * d.y;
-    // Shifted by the first value, so that nothing cancels.
-    if (count_++ == 0) first_ = value;
-    const Wide v = value - first_;
-    v_ += weight * v, vx_ += weight * d.x * v, vy_ += weight * d.y * v;
-  }
-  int count() const { return count_; }
-  Wide value() const {
-    const double mx = x_ / w_, my = y_ / w_;
-    const Wide mean = v_ / w_;
-    double sxx = xx_ / w_ - mx * mx, sxy = xy_ / w_ - mx * my, syy = yy_ / w_ - my * my;
-    const double ridge = 1e-3 * (sxx + syy) + 1e-6;
-    sxx += ridge, syy += ridge;
-    const Wide cx = vx_ / w_ - mx * mean, cy = vy_ / w_ - my * mean;
-    const double det = sxx * syy - sxy * sxy;
-    const Wide gx = (cx * syy - cy * sxy) / det, gy = (cy * sxx - cx * sxy) / det;
-    return first_ + mean - gx * mx - gy * my;
-  }
-
- private:
-  double w_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0;
-  Wide first_{0}, v_{0}, vx_{0}, vy_{0};
-  int count_ = 0;
 };
 
 /// The field at a position, from samples of one surface.
@@ -77,7 +47,7 @@ typename Value<V>::Wide read_field(const Plane<V>& field, const GatherSource& so
       return top + (bottom - top) * fy;
     }
   }
-  for (int reach = 2; reach <= 8; reach *= 2) {  // 4x4, 8x8, 16x16 samples
+  for (int reach = 2; reach <= kWidest; reach *= 2) {  // 4x4, 8x8 ... samples
     AffineFit<Wide> fit;
     const int x0 = std::max(bx + 1 - reach, w.x0), x1 = std::min(bx + reach, w.x1 - 1);
     const int y0 = std::max(by + 1 - reach, w.y0), y1 = std::min(by + reach, w.y1 - 1);
@@ -88,8 +58,8 @@ typename Value<V>::Wide read_field(const Plane<V>& field, const GatherSource& so
         const glm::dvec2 d(x - ux, y - uy);
         fit.add(d, 1 / (0.25 + d.x * d.x + d.y * d.y), Wide(v));
       }
-    // A fit that only reaches to one side needs more than it takes to span a plane.
-    if (fit.count() >= (reach == 2 ? 6 : reach == 4 ? 5 : 1)) return fit.value();
+    // On a line the slope across it is unknown; a wider window may have another line of the same surface.
+    if (fit.count() > 0 && (reach == kWidest || fit.is_firm())) return fit.value();
   }
   return Wide(kNowhere);
 }

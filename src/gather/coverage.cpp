@@ -67,8 +67,17 @@ void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arr
   // In the resolved frame itself it lies where it lies.
   Track& here = tracks[c.present];
   if (!here.known()) here = {glm::dvec2(0), arrivals.front()->depth, 0};
-  std::vector<Track>& filled = tracks;
-  fill_gaps(filled);
+  // Frames whose samples miss it here: as it moves elsewhere in the tile.
+  for (const TileSurface& s : c.arrivals->surfaces) {
+    if (!belongs(s.id, s.near, s.far, *arrivals.front(), c.test)) continue;
+    for (std::size_t f = 0; f < frames; ++f)
+      if (!tracks[f].known() && s.motion[f].count() > 0) {
+        const glm::dvec3 v = s.motion[f].value(glm::dvec2(mx, my) - glm::dvec2(kTile / 2));
+        tracks[f] = {glm::dvec2(v), float(v.z), 0};
+      }
+    break;
+  }
+  fill_gaps(tracks);
 
   scratch.px.clear(), scratch.py.clear(), scratch.is_hit.clear();
   const double reach = double(c.arrivals->around) / kBinsPerPixel;  // beyond the pixel's edge

@@ -39,8 +39,7 @@ void find_arrivals(const PixelContext& c, int x, int y, std::vector<const Arriva
 }
 
 bool belongs(const Surface& s, const Arrival& a, const SurfaceTest& test) {
-  return (!test.ids || s.id == a.id) && (test.near(s.near, a.depth) || test.near(s.far, a.depth) ||
-                                         (a.depth >= s.near && a.depth <= s.far));
+  return belongs(s.id, s.near, s.far, a, test);
 }
 
 /// Tells the surfaces apart. Where there is no depth to sort them by they count as one.
