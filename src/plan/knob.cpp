@@ -5,6 +5,11 @@
 namespace varve {
 namespace {
 
+constexpr Word<Accumulator> kAccumulators[] = {
+    {"recursive", Accumulator::recursive, "a history that is carried from frame to frame; fast, looks back only"},
+    {"two-sided", Accumulator::two_sided, "past and future histories merged, the present counted once"},
+    {"gather", Accumulator::gather, "every sample of the frames around, carried here along its own motion, used once"},
+};
 constexpr Word<Dilation> kDilations[] = {
     {"none", Dilation::none, "the pixel's own vector"},
     {"nearest", Dilation::nearest, "the vector of the nearest depth among the 3x3 neighbors; needs depth"},
@@ -90,6 +95,9 @@ std::vector<Knob> knobs() {
        word(
            [](auto& p) -> auto& { return p.motion.depth_kind; }, kDepthKinds)},
 
+      {"accumulator", "WORD", history, basic, "How frames are combined.",
+       word(
+           [](auto& p) -> auto& { return p.accumulator; }, kAccumulators)},
       {"alpha", "WEIGHT", history, basic,
        "Weight of the present frame, the rest is history. Near 0 history decides: steady, slow to follow changes of "
        "light. 1 leaves the present as it is.",

@@ -10,6 +10,7 @@ namespace varve {
 
 struct Parameters {
   std::string preset = "salvi";  ///< where the values came from before the user changed any
+  Accumulator accumulator = Accumulator::recursive;
   MotionParameters motion;
   RecursiveParameters recursive;
   RectifyParameters rectify;

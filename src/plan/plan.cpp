@@ -33,6 +33,8 @@ bool has_motion(const Subject& s) { return s.backward || s.forward; }
 
 // What was asked for outright and cannot be done. Falling back silently would change the picture without a word.
 void check_possible(const SequenceInfo& info, const Parameters& parameters) {
+  if (parameters.accumulator != Accumulator::recursive)
+    throw Failure(ExitCode::usage, "this accumulator is not built yet; give --accumulator recursive");
   if (parameters.recursive.disocclusion == Disocclusion::depth)
     for (const Subject& subject : info.first.subjects)
       if (!subject.depth)
@@ -189,6 +191,7 @@ class Planner {
       if (plan_.use_depth) read(subject.depth);
       const std::optional<VectorChannels>& vector = subject.backward ? subject.backward : subject.forward;
       if (vector) read((*vector)[0]), read((*vector)[1]);
+      if (plan_.use_forward && subject.forward) read((*subject.forward)[0]), read((*subject.forward)[1]);
     }
     std::sort(plan_.channels.begin(), plan_.channels.end(), [](const ChannelRef& a, const ChannelRef& b) {
       return std::array{a.file, a.part, a.channel} < std::array{b.file, b.part, b.channel};

@@ -29,6 +29,7 @@ struct Plan {
                                      ///< channels that are only passed through are not among them
   bool use_depth = false;            ///< depth is read and used
   bool use_motion = false;
+  bool use_forward = false;  ///< vectors to the next frame are read where the files have them
   bool use_jitter = false;
   std::size_t bytes = 0;           ///< peak memory expected
   double seconds_per_frame = 0;    ///< expected wall time

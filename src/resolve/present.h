@@ -20,6 +20,7 @@ struct Present {
   Plane<float> valid;                    ///< 1 where color came finite from the file, 0 elsewhere and in the border
   std::vector<std::uint8_t> rows_valid;  ///< per row: 1 when every pixel of it is valid
   Plane<glm::vec2> motion;     ///< dilated backward motion, pixels, y down; NaN where unusable; empty: at rest
+  Plane<glm::vec2> forward;    ///< the same to the next frame; empty unless asked for and in the file
   Plane<float> depth;          ///< of the surface that lent the motion, +inf for background; may be empty
   std::size_t not_finite = 0;  ///< pixels with a channel that was NaN or infinite
 };

@@ -63,6 +63,7 @@ std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const Chan
     if (needs.depth && subject.depth) add(*subject.depth);
     const auto& vectors = subject.backward ? subject.backward : subject.forward;
     if (needs.motion && vectors) add((*vectors)[0]), add((*vectors)[1]);
+    if (needs.forward && subject.forward) add((*subject.forward)[0]), add((*subject.forward)[1]);
     if (needs.whole_parts && file == 0) {
       const int part = part_of(subject);
       const std::size_t channels = headers.files.front().parts[std::size_t(part)].channels.size();
@@ -108,18 +109,27 @@ Present read_present(const Subject& subject, const FileSet& pixels, const Window
     return present;
   }
 
+  const auto read = [&](const VectorChannels& channels, const MotionEncoding& encoding) {
+    return read_vectors(channels, encoding, pixels, window, display_window, options.motion.max_length, vectors_bad,
+                        workers);
+  };
+  const Dilation dilation = options.as_stored ? Dilation::none : options.motion.dilation;
+  if (options.use_forward && subject.forward)
+    present.forward = dilate_motion(read(*subject.forward, subject.forward_encoding), depth, dilation, workers).motion;
+
   // Backward vectors from the file; or the previous frame's forward vectors turned round.
   Plane<glm::vec2> motion;
   if (subject.backward) {
-    motion = read_vectors(*subject.backward, subject.backward_encoding, pixels, window, display_window,
-                          options.motion.max_length, vectors_bad, workers);
-  } else {
-    Plane<glm::vec2> forward = read_vectors(*subject.forward, subject.forward_encoding, pixels, window, display_window,
-                                            options.motion.max_length, vectors_bad, workers);
+    motion = read(*subject.backward, subject.backward_encoding);
+  } else if (!options.as_stored) {
+    Plane<glm::vec2> forward = read(*subject.forward, subject.forward_encoding);
     motion = invert_forward_motion(memory.motion, memory.depth, forward);
     memory = {std::move(forward), depth.empty() ? Plane<float>() : depth.clone()};
+  } else {
+    present.depth = std::move(depth);
+    return present;
   }
-  DilatedMotion dilated = dilate_motion(std::move(motion), depth, options.motion.dilation, workers);
+  DilatedMotion dilated = dilate_motion(std::move(motion), depth, dilation, workers);
   present.motion = std::move(dilated.motion);
   present.depth = std::move(dilated.depth);
   return present;
