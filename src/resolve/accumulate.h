@@ -52,13 +52,16 @@ struct History {
 struct AccumulateDiagnostics {
   Plane<float> clip, weight;
   Plane<std::uint32_t> reject;
+  // Only of accumulators that look ahead; `reject` is then that of the past.
+  Plane<float> count_past, count_future;
+  Plane<std::uint32_t> reject_future;
 };
 
 struct AccumulateView;  // resolve/accumulate_row.h
 struct RowScratch;
 
 struct DiagnosticsWanted {
-  bool clip = false, weight = false, reject = false;
+  bool clip = false, weight = false, reject = false, counts = false;
 };
 
 struct AccumulateCounts {
