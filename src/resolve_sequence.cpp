@@ -111,9 +111,12 @@ void check_same_subjects(const FrameHeaders& first, const FrameHeaders& now, con
                                                   "; render it again, or leave it out with --frames");
     const bool other_vectors =
         a.backward.has_value() != b.backward.has_value() || a.forward.has_value() != b.forward.has_value();
-    if ((plan.use_motion && other_vectors) || (plan.use_depth && a.depth.has_value() != b.depth.has_value()))
+    const bool other_marks = (plan.use_id && a.id.has_value() != b.id.has_value()) ||
+                             (plan.use_normal && a.normal.has_value() != b.normal.has_value());
+    if ((plan.use_motion && other_vectors) || (plan.use_depth && a.depth.has_value() != b.depth.has_value()) ||
+        other_marks)
       throw Failure(ExitCode::inconsistent,
-                    where + ", " + layer + ": its depth or motion channels are not those of frame " +
+                    where + ", " + layer + ": its depth, motion, id or normal channels are not those of frame " +
                         std::to_string(first.frame) + "; render it again, or leave it out with --frames");
   }
 }
@@ -145,11 +148,28 @@ SourceFrame read_frame(const Setup& s, const ScheduledFrame& scheduled, std::vec
   // Frames that wait in a window do so without what only passes through.
   const bool whole_parts = s.job.request.keep_channels && s.reach.back_to_restart;
   const bool as_stored = s.job.parameters.accumulator == Accumulator::gather;
+  const Plan& plan = s.plan;
   source.pixels = in_frame(scheduled.frame, [&] {
-    return read_files(source.headers, {s.plan.use_depth, s.plan.use_motion, whole_parts, s.plan.use_forward}, workers);
+    return read_files(source.headers,
+                      {.depth = plan.use_depth,
+                       .motion = plan.use_motion,
+                       .whole_parts = whole_parts,
+                       .forward = plan.use_forward,
+                       .id = plan.use_id,
+                       .normal = plan.use_normal,
+                       .reactive = plan.use_reactive,
+                       .responsive = plan.use_responsive},
+                      workers);
   });
-  const ReadOptions options{s.job.parameters.motion, s.plan.use_depth, s.plan.use_motion, s.plan.use_forward,
-                            as_stored};
+  const ReadOptions options{.motion = s.job.parameters.motion,
+                            .use_depth = plan.use_depth,
+                            .use_motion = plan.use_motion,
+                            .use_forward = plan.use_forward,
+                            .as_stored = as_stored,
+                            .use_id = plan.use_id,
+                            .use_normal = plan.use_normal,
+                            .use_reactive = plan.use_reactive,
+                            .use_responsive = plan.use_responsive};
   for (std::size_t k = 0; k < source.headers.subjects.size(); ++k) {
     const Subject& subject = source.headers.subjects[k];
     const Part& part = source.headers.files.front().parts[std::size_t(part_of(subject))];
@@ -165,7 +185,7 @@ SourceFrame read_frame(const Setup& s, const ScheduledFrame& scheduled, std::vec
 /// The file's pixels as stored, for what stands beside the color when it is written.
 FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& workers) {
   if (!s.job.request.keep_channels) return FileSet(headers.files.size());
-  return in_frame(headers.frame, [&] { return read_files(headers, {false, false, true}, workers); });
+  return in_frame(headers.frame, [&] { return read_files(headers, {.whole_parts = true}, workers); });
 }
 
 /// One subject: the present meets the history.

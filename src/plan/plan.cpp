@@ -189,6 +189,11 @@ class Planner {
     for (const Subject& subject : info_.first.subjects) {
       for (const std::optional<ChannelRef>& channel : subject.color) read(channel);
       if (plan_.use_depth) read(subject.depth);
+      if (plan_.use_id) read(subject.id);
+      if (plan_.use_normal && subject.normal)
+        for (const ChannelRef& axis : *subject.normal) read(axis);
+      if (plan_.use_reactive) read(subject.reactive);
+      if (plan_.use_responsive) read(subject.responsive);
       const std::optional<VectorChannels>& vector = subject.backward ? subject.backward : subject.forward;
       if (vector) read((*vector)[0]), read((*vector)[1]);
       if (plan_.use_forward && subject.forward) read((*subject.forward)[0]), read((*subject.forward)[1]);
