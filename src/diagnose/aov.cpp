@@ -11,7 +11,8 @@ constexpr Aov kAovs[] = {
      "Clip distance: how far rectification moved the history, in RGB, over the longer of what it was and what it "
      "became."},
     {"reject", "", PixelType::uint32, "bits", "0 to 127", "turbo", 0, 127,
-     "Why history was not used: a sum of the bits listed under REJECTION BITS. 0 where history was used."},
+     "Why history was not used: a sum of the bits listed under REJECTION BITS. 0 where history was used. With "
+     "--accumulator two-sided: why the past was not used."},
     {"motion", "xy", PixelType::float32, "pixels, y down", "any", "blue-red", -16, 16,
      "Backward motion used, after dilation: previous position minus this position."},
     {"weight", "", PixelType::float32, "fraction", "0 to 1", "viridis", 0, 1,
@@ -19,9 +20,21 @@ constexpr Aov kAovs[] = {
     {"prediction", "rgb", PixelType::float32, "scene-linear", "any", "viridis", 0, 1,
      "What the frames before say this pixel is: the history rectified without the pixel itself, nothing of the present "
      "blended in. 0 where there is no history. It follows its neighbors, which share the jitter of the pixel: to rank "
-     "settings use varve measure."},
+     "settings use varve measure. Only of --accumulator recursive.",
+     AovScope::looking_back},
     {"repaired", "", PixelType::float32, "flag", "0 or 1", "inferno", 0, 1,
      "1 where the input color was not finite and something else stands in the output."},
+    {"count-past", "", PixelType::float32, "samples", "0 and up", "viridis", 0, 20,
+     "Effective sample count of what the frames before say of the pixel, before its weight is cut for having been "
+     "clipped. 0 where they say nothing. Only of accumulators that look ahead.",
+     AovScope::both_sides},
+    {"count-future", "", PixelType::float32, "samples", "0 and up", "viridis", 0, 20, "The same of the frames after.",
+     AovScope::both_sides},
+    {"reject-future", "", PixelType::uint32, "bits", "0 to 127", "turbo", 0, 127,
+     "Why the future was not used: the bits of the plane reject, seen from the other side of time. Only of "
+     "accumulators "
+     "that look ahead.",
+     AovScope::both_sides},
 };
 
 constexpr RejectName kBits[] = {

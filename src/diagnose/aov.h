@@ -10,6 +10,9 @@
 
 namespace varve {
 
+/// Who can fill a plane: every accumulator, only one that looks back, or only those that look ahead too.
+enum class AovScope { every, looking_back, both_sides };
+
 struct Aov {
   std::string_view name;        ///< as given to --aov; the channel is varve.<name>[.<component>]
   std::string_view components;  ///< "" for one channel, else one letter each: "xy"
@@ -19,6 +22,7 @@ struct Aov {
   std::string_view colormap;         ///< OpenImageIO color map for --preview
   double preview_low, preview_high;  ///< values shown as the ends of the color map
   std::string_view meaning;
+  AovScope scope = AovScope::every;
 };
 
 std::span<const Aov> diagnostic_aovs();

@@ -5,6 +5,7 @@
 
 #include "motion/motion.h"
 #include "resolve/accumulate.h"
+#include "resolve/two_sided.h"
 
 namespace varve {
 
@@ -14,6 +15,7 @@ struct Parameters {
   MotionParameters motion;
   RecursiveParameters recursive;
   RectifyParameters rectify;
+  TwoSidedParameters two_sided;
 };
 
 }  // namespace varve

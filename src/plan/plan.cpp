@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "diagnose/aov.h"
 #include "plan/cost.h"
+#include "plan/two_sided_plan.h"
 
 namespace varve {
 namespace {
@@ -33,7 +34,7 @@ bool has_motion(const Subject& s) { return s.backward || s.forward; }
 
 // What was asked for outright and cannot be done. Falling back silently would change the picture without a word.
 void check_possible(const SequenceInfo& info, const Parameters& parameters) {
-  if (parameters.accumulator != Accumulator::recursive)
+  if (parameters.accumulator == Accumulator::gather)
     throw Failure(ExitCode::usage, "this accumulator is not built yet; give --accumulator recursive");
   if (parameters.recursive.disocclusion == Disocclusion::depth)
     for (const Subject& subject : info.first.subjects)
@@ -82,6 +83,21 @@ class Planner {
             share(inverted) + (depth ? "; depth tells which surface is in front" : ""));
   }
 
+  void sides() {
+    const bool two_sided = parameters_.accumulator == Accumulator::two_sided;
+    if (!two_sided && !output_.spill_folder.empty())
+      throw Failure(ExitCode::usage, "--spill keeps the future of --accumulator two-sided; leave it out");
+    if (!two_sided) return;
+    plan_.use_forward = true;
+    const auto inverts = [](const Subject& s) { return has_motion(s) && !(s.backward && s.forward); };
+    const std::size_t inverted = count_if(info_, inverts);
+    const bool depth = std::any_of(info_.first.subjects.begin(), info_.first.subjects.end(),
+                                   [&](const Subject& s) { return inverts(s) && s.depth; });
+    if (depth) plan_.use_depth = true;
+    plan_.passes.push_back(motion_of_both_sides(count_if(info_, has_motion) > 0, inverted > 0, depth, share(inverted)));
+    plan_.passes.push_back(past_and_future(parameters_, output_));
+  }
+
   void dilate() {
     const Dilation asked = parameters_.motion.dilation;
     const std::size_t with_depth = count_if(info_, has_depth);
@@ -105,14 +121,15 @@ class Planner {
     constexpr std::array<const char*, 4> kFilters = {"bilinear", "16-tap Catmull-Rom", "9-tap Catmull-Rom",
                                                      "5-tap Catmull-Rom"};
     const std::string filter = kFilters[std::size_t(parameters_.recursive.history_filter)];
-    if (info_.frames.size() < 2) {
+    if (stands_alone()) {
       add("history", false, "there is one frame only, so nothing came before");
       add("window test", false, "no history");
       add("depth test", false, "no history");
       return;
     }
-    add("history", true,
-        plan_.use_motion ? "one frame back along the vectors, " + filter : "one frame back at the same pixel");
+    const std::string way =
+        parameters_.accumulator == Accumulator::two_sided ? "one frame back, and one ahead, " : "one frame back ";
+    add("history", true, plan_.use_motion ? way + "along the vectors, " + filter : way + "at the same pixel");
     add("window test", true,
         "history outside the data window is no data" + std::string(info_.windows_move ? ", and the window moves" : ""));
     const bool test = parameters_.recursive.disocclusion == Disocclusion::depth;
@@ -141,7 +158,7 @@ class Planner {
       add("rectify", false, "no box");
       return;
     }
-    if (info_.frames.size() < 2) {
+    if (stands_alone()) {
       add("neighborhood box", false, "no history to hold against it");
       add("rectify", false, "no history");
       return;
@@ -160,6 +177,7 @@ class Planner {
 
   void blend() {
     const RecursiveParameters& r = parameters_.recursive;
+    if (parameters_.accumulator == Accumulator::two_sided) return add("blend", true, blend_of_both_sides(parameters_));
     add("blend", true,
         r.alpha_rule == AlphaRule::fixed
             ? "the present weighs " + short_number(r.alpha)
@@ -167,13 +185,9 @@ class Planner {
   }
 
   void outputs() {
+    planned_aovs(output_, parameters_.accumulator);
     std::string names;
-    for (const std::string& name : output_.aovs) {
-      if (name != "all" && !find_aov(name))
-        throw Failure(ExitCode::usage,
-                      "--aov " + name + ": there is no such diagnostic plane; varve help aovs lists them");
-      names += (names.empty() ? "" : ", ") + name;
-    }
+    for (const std::string& name : output_.aovs) names += (names.empty() ? "" : ", ") + name;
     add("diagnostics", !names.empty(),
         names.empty() ? "none asked for"
                       : names + (output_.diagnostics_apart ? ", in files of their own" : ", in the output"));
@@ -206,6 +220,9 @@ class Planner {
   void add(const char* name, bool runs, std::string reason) { plan_.passes.push_back({name, runs, std::move(reason)}); }
 
  private:
+  // One frame, and none around it to look at.
+  bool stands_alone() const { return info_.frames.size() < 2 && parameters_.accumulator == Accumulator::recursive; }
+
   // " (2 of 3 layers)" when a pass does not concern all.
   std::string share(std::size_t count) const {
     return count == subjects_ ? "" : " (" + std::to_string(count) + " of " + std::to_string(subjects_) + " layers)";
@@ -220,6 +237,32 @@ class Planner {
 
 }  // namespace
 
+std::vector<const Aov*> planned_aovs(const OutputRequest& request, Accumulator accumulator) {
+  const bool looks_ahead = accumulator != Accumulator::recursive;
+  const auto can_fill = [&](const Aov& aov) {
+    return aov.scope == AovScope::every || (aov.scope == AovScope::both_sides) == looks_ahead;
+  };
+  std::vector<const Aov*> planned;
+  for (const std::string& name : request.aovs) {
+    if (name == "all") {
+      planned.clear();
+      for (const Aov& aov : diagnostic_aovs())
+        if (can_fill(aov)) planned.push_back(&aov);
+      return planned;
+    }
+    const Aov* aov = find_aov(name);
+    if (!aov)
+      throw Failure(ExitCode::usage,
+                    "--aov " + name + ": there is no such diagnostic plane; varve help aovs lists them");
+    if (!can_fill(*aov))
+      throw Failure(ExitCode::usage, "--aov " + name + " has nothing to show with this --accumulator: it needs " +
+                                         (looks_ahead ? "recursive" : "one that looks ahead, as two-sided does") +
+                                         "; leave the plane out, or give another accumulator");
+    planned.push_back(aov);
+  }
+  return planned;
+}
+
 Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const OutputRequest& output, int threads) {
   check_possible(info, parameters);
   Plan plan;
@@ -227,6 +270,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   planner.add("read", true, "");
   planner.add("sanitize", true, "pixels that are not finite are kept from spreading");
   planner.motion();
+  planner.sides();
   planner.dilate();
   planner.history();
   planner.sample_weights();

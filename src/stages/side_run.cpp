@@ -21,6 +21,8 @@ void pass_subjects(SideRun& run, SourceFrame& source, const SharedVectors& vecto
     DilatedMotion dilated = motion_to(run.side, (*vectors)[k], neighbor, parameters, workers);
     present.motion = std::move(dilated.motion);
     present.depth = std::move(dilated.depth);
+    present.id = std::move(dilated.marks.id);
+    present.normal = std::move(dilated.marks.normal);
     run.states[k] = step(k, present, run.states[k], jitter);
   }
   run.neighbor = vectors;
@@ -31,7 +33,10 @@ void pass_subjects(SideRun& run, SourceFrame& source, const SharedVectors& vecto
 SharedVectors take_vectors(SourceFrame& source) {
   auto vectors = std::make_shared<std::vector<FrameVectors>>();
   for (Present& present : source.presents)
-    vectors->push_back({std::move(present.motion), std::move(present.forward), std::move(present.depth)});
+    vectors->push_back({std::move(present.motion),
+                        std::move(present.forward),
+                        std::move(present.depth),
+                        {std::move(present.id), std::move(present.normal)}});
   return vectors;
 }
 
@@ -39,7 +44,8 @@ DilatedMotion motion_to(Side side, const FrameVectors& here, const FrameVectors*
                         Workers& workers) {
   const bool past = side == Side::past;
   const Plane<glm::vec2>&own = past ? here.backward : here.forward, &opposite = past ? here.forward : here.backward;
-  if (own.empty() && opposite.empty()) return {{}, here.depth.empty() ? Plane<float>() : here.depth.clone()};
+  SurfaceMarks marks{here.marks.id.clone(), here.marks.normal.clone()};
+  if (own.empty() && opposite.empty()) return {{}, here.depth.clone(), std::move(marks)};
 
   const Plane<glm::vec2> none;
   const Plane<glm::vec2>& back = !neighbor ? none : past ? neighbor->forward : neighbor->backward;
@@ -52,7 +58,8 @@ DilatedMotion motion_to(Side side, const FrameVectors& here, const FrameVectors*
       motion =
           invert_motion(back, neighbor->depth, here.depth, parameters.recursive.depth_tolerance, std::move(motion));
   }
-  DilatedMotion dilated = dilate_motion(std::move(motion), here.depth, parameters.motion.dilation, workers);
+  DilatedMotion dilated =
+      dilate_motion(std::move(motion), here.depth, parameters.motion.dilation, workers, std::move(marks));
   const double tolerance = parameters.two_sided.return_tolerance;
   if (tolerance > 0 && !back.empty()) reject_one_way_motion(dilated.motion, back, tolerance, workers);
   return dilated;

@@ -10,10 +10,12 @@
 
 namespace varve {
 
-/// Vectors of one subject as its file has them, and the depth they are weighed by; empty where there are none.
+/// Vectors of one subject as its file has them, and what is known of the surfaces that they move; empty where there is
+/// nothing.
 struct FrameVectors {
   Plane<glm::vec2> backward, forward;
   Plane<float> depth;
+  SurfaceMarks marks;
 };
 /// One for each subject of a frame; shared by the runs that pass it.
 using SharedVectors = std::shared_ptr<const std::vector<FrameVectors>>;
@@ -25,9 +27,9 @@ SharedVectors take_vectors(SourceFrame& source);
 /// image.
 enum class Side { past, future };
 
-/// Motion from a frame to its neighbor on one side, dilated, and the depth of the surface that lent it. Vectors come
-/// from the file, or from the neighbor's vectors to this frame, inverted with a depth test; holes (hidden there) are
-/// NaN. `neighbor` may be null at the end of a run. Without any vectors the motion is empty: at rest.
+/// Motion from a frame to its neighbor on one side, dilated, with depth and marks of the surface that lent it. Vectors
+/// come from the file, or from the neighbor's vectors to this frame, inverted with a depth test; holes (hidden there)
+/// are NaN. `neighbor` may be null at the end of a run. Without any vectors the motion is empty: at rest.
 DilatedMotion motion_to(Side side, const FrameVectors& here, const FrameVectors* neighbor, const Parameters& parameters,
                         Workers& workers);
 

@@ -111,9 +111,14 @@ bool StrictStore::has(std::size_t index) const {
 }
 
 std::vector<StrictSide> StrictStore::take(std::size_t index) {
-  if (!file_) return std::move(kept_.extract(index).mapped());
-  const File::Entry entry = std::move(file_->entries.extract(index).mapped());
   std::vector<StrictSide> sides;
+  if (!file_) {
+    sides = std::move(kept_.at(index));
+    kept_.erase(index);
+    return sides;
+  }
+  const File::Entry entry = std::move(file_->entries.at(index));
+  file_->entries.erase(index);
   for (const Shape& shape : entry.shapes) {
     const Window& w = shape.window;
     sides.push_back({Plane<glm::vec4>(w), Plane<float>(w), Plane<float>(w),
