@@ -207,6 +207,12 @@ void add_diagnostic_options(std::vector<Option>& rows) {
        text(
            [](auto& s) -> auto& { return s.job.preview_folder; }, "a folder")})
       .completes = Completes::folders;
+  add({"spill", 0, "FOLDER", kResolve, kAdvanced, group,
+       "With --accumulator two-sided: keep what the future says of a block in a file in this folder instead of in "
+       "memory. The file has no name and is gone when the program ends, however it ends.",
+       text(
+           [](auto& s) -> auto& { return s.job.request.spill_folder; }, "a folder")})
+      .completes = Completes::folders;
   add({"report", 0, "FILE", kResolve, kAdvanced, group,
        "Write a JSON file with one row for each frame: times in seconds and counts of pixels.",
        text(

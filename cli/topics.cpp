@@ -54,7 +54,8 @@ Topic aovs_topic() {
       {}};
   for (const Aov& aov : diagnostic_aovs())
     topic.rows.emplace_back(aov.name, std::string(aov.meaning) + " Unit: " + std::string(aov.unit) +
-                                          ". Range: " + std::string(aov.range) + ".");
+                                          ". Range: " + std::string(aov.range) + "." +
+                                          (aov.filled_by == kByAll ? "" : " Only of " + accumulators_of(aov) + "."));
   return topic;
 }
 

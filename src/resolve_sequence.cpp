@@ -16,6 +16,7 @@
 #include "stages/preflight.h"
 #include "stages/previews.h"
 #include "stages/read_present.h"
+#include "stages/two_sided_pass.h"
 #include "stages/write_resolved.h"
 
 namespace varve {
@@ -54,28 +55,25 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-std::vector<const Aov*> chosen_aovs(const OutputRequest& request) {
-  std::vector<const Aov*> chosen;
-  for (const std::string& name : request.aovs) {
-    if (name == "all") {
-      chosen.clear();
-      for (const Aov& aov : diagnostic_aovs()) chosen.push_back(&aov);
-      return chosen;
-    }
-    const Aov* aov = find_aov(name);
-    if (!aov) throw Failure(ExitCode::usage, "there is no diagnostic plane '" + name + "'; see varve help aovs");
-    chosen.push_back(aov);
-  }
-  return chosen;
-}
-
 Setup set_up(const ResolveJob& job) {
   const JitterSource jitter = parse_jitter_source(job.jitter);
   SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
   check_roles(job, info);
   Plan plan = make_plan(info, job.parameters, job.request, job.threads);
-  Setup s{job, std::move(info), std::move(plan), jitter, {}, {}, reach_of(job), job.parameters.gather, chosen_aovs(job.request), {}, {}, {}};
+  Setup s{job,
+          std::move(info),
+          std::move(plan),
+          jitter,
+          {},
+          {},
+          reach_of(job),
+          job.parameters.gather,
+          planned_aovs(job.request, job.parameters.accumulator),
+          {},
+          {},
+          {}};
   s.gather.filter = job.parameters.recursive.sample_filter;
+  s.gather.return_tolerance = job.parameters.two_sided.return_tolerance;
   s.parameters = describe_parameters(job, s.info);
   s.hash = hash_of(s.parameters + describe_side_inputs(job));
   // Around the resolve: from the input's space to scene-linear, and from there to the output's.
@@ -161,7 +159,7 @@ SourceFrame read_frame(const Setup& s, const ScheduledFrame& scheduled, std::vec
   check_same_subjects(s.info.first, source.headers, s.plan);
   // Frames that wait in a window do so without what only passes through.
   const bool whole_parts = s.job.request.keep_channels && s.reach.back_to_restart;
-  const bool as_stored = s.job.parameters.accumulator == Accumulator::gather;
+  const bool as_stored = s.job.parameters.accumulator != Accumulator::recursive;
   const Plan& plan = s.plan;
   source.pixels = in_frame(scheduled.frame, [&] {
     return read_files(source.headers,
@@ -228,6 +226,33 @@ Resolved resolve_recursive(const Setup& s, const FrameHeaders& headers, const Pr
   return r;
 }
 
+std::vector<Resolved> resolve_recursive(const Setup& s, const SourceFrame& source, const ScheduledFrame& scheduled,
+                                        std::vector<SubjectState>& states, Workers& workers) {
+  std::vector<Resolved> resolved;
+  for (std::size_t k = 0; k < source.presents.size(); ++k)
+    resolved.push_back(resolve_recursive(s, source.headers, source.presents[k], scheduled, states[k], workers));
+  return resolved;
+}
+
+/// Empty when asked to stop.
+std::vector<Resolved> resolve_two_sided(TwoSidedPass& pass, std::size_t index, SourceFrame& source) {
+  std::vector<Resolved> resolved;
+  if (std::optional<std::vector<Accumulated>> all = pass.resolve(index, source))
+    for (Accumulated& accumulated : *all) resolved.push_back({std::move(accumulated), {}});
+  return resolved;
+}
+
+std::vector<Resolved> resolve_gather(const Setup& s, const FrameWindow& window, std::size_t index,
+                                     std::pair<std::size_t, std::size_t> span, std::vector<SubjectState>& states,
+                                     Workers& workers) {
+  std::vector<Resolved> resolved;
+  for (std::size_t k = 0; k < states.size(); ++k)
+    resolved.push_back({gather_frame(window, k, index, span.first, span.second, s.gather, states[k].gathered,
+                                     diagnostics_wanted(s.aovs), workers),
+                        {}});
+  return resolved;
+}
+
 void count(FrameReport& report, const SourceFrame& source, const std::vector<Resolved>& resolved) {
   report.vectors_bad += source.vectors_bad;
   for (std::size_t k = 0; k < resolved.size(); ++k) {
@@ -289,11 +314,18 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
 
   Workers workers(job.threads);
   std::vector<SubjectState> states(s.info.first.subjects.size());
-  FrameWindow window([&](std::size_t index) { return read_frame(s, schedule[index], states, workers); });
+  const auto read = [&](std::size_t index) { return read_frame(s, schedule[index], states, workers); };
+  FrameWindow window(read);
   ResolveSummary summary;
   int total = 0, done = 0;
   for (const ScheduledFrame& scheduled : schedule) total += scheduled.write;
   const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
+
+  const bool gathers = job.parameters.accumulator == Accumulator::gather;
+  std::optional<TwoSidedPass> two_sided;
+  if (job.parameters.accumulator == Accumulator::two_sided)
+    two_sided.emplace(schedule, s.reach, StepOptions{job.parameters, diagnostics_wanted(s.aovs)},
+                      job.request.spill_folder, read, stop, workers);
 
   for (std::size_t i = 0; i < schedule.size() && !stop(); ++i) {
     const ScheduledFrame& scheduled = schedule[i];
@@ -315,20 +347,18 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
 
     // Read what is not held yet.
     Stopwatch clock;
-    const auto [first, last] = s.reach.back_to_restart ? std::pair(i, i) : span_around(schedule, i, s.reach);
+    const bool one_frame = s.reach.back_to_restart || two_sided;
+    const auto [first, last] = one_frame ? std::pair(i, i) : span_around(schedule, i, s.reach);
     window.hold(first, last);
-    const SourceFrame& source = window[i];
+    SourceFrame& source = window[i];
     report.read_seconds = clock.lap();
     if (stop()) break;
 
     // Resolve, subject by subject.
-    std::vector<Resolved> resolved;
-    for (std::size_t k = 0; k < source.presents.size(); ++k)
-      if (job.parameters.accumulator == Accumulator::gather)
-        resolved.push_back({gather_frame(window, k, i, first, last, s.gather, states[k].gathered,
-                                         diagnostics_wanted(s.aovs), workers), {}});
-      else
-        resolved.push_back(resolve_recursive(s, source.headers, source.presents[k], scheduled, states[k], workers));
+    std::vector<Resolved> resolved = two_sided ? resolve_two_sided(*two_sided, i, source)
+                                     : gathers ? resolve_gather(s, window, i, {first, last}, states, workers)
+                                               : resolve_recursive(s, source, scheduled, states, workers);
+    if (summary.stopped) break;
     count(report, source, resolved);
     report.resolve_seconds = clock.lap();
     if (stop()) break;

@@ -27,7 +27,8 @@ class AffineFit {
     const double sxx = xx_ / w_ - mx * mx, sxy = xy_ / w_ - mx * my, syy = yy_ / w_ - my * my;
     const double det = sxx * syy - sxy * sxy, sum = sxx + syy;
     // The smaller spread is about det / sum; the last is the distance of the origin, squared, in units of the spread.
-    return count_ >= 5 && det > kFirmSpread * sum && mx * mx * syy - 2 * mx * my * sxy + my * my * sxx < kFirmReach * det;
+    return count_ >= 5 && det > kFirmSpread * sum &&
+           mx * mx * syy - 2 * mx * my * sxy + my * my * sxx < kFirmReach * det;
   }
   /// At the origin of the offsets.
   Wide value() const { return value({0, 0}); }

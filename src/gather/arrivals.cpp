@@ -27,9 +27,7 @@ TileSpan tiles_of_block(const GatherSource& source, const Carried& field, const 
     }
   if (!(low_x <= high_x)) return {};
   const double ox = 0.5 + source.jitter.x - grid.window.x0, oy = 0.5 + source.jitter.y - grid.window.y0;
-  const auto tile = [&](double at, int count) {
-    return int(std::clamp(std::floor(at / kTile), -1.0, double(count)));
-  };
+  const auto tile = [&](double at, int count) { return int(std::clamp(std::floor(at / kTile), -1.0, double(count))); };
   const int columns = grid.columns(), rows = grid.rows();
   TileSpan s{tile(low_x + ox - grid.margin, columns), tile(low_y + oy - grid.margin, rows),
              tile(high_x + ox + grid.margin, columns) + 1, tile(high_y + oy + grid.margin, rows) + 1};
@@ -60,7 +58,9 @@ void fit_surfaces(TileArrivals& t, std::span<const GatherSource> sources, const 
   std::size_t last = 0;
   for (std::size_t i = 0; i < t.sorted.size(); ++i) {
     const Arrival& a = t.sorted[i];
-    const auto fits = [&](std::size_t k) { return belongs(t.surfaces[k].id, t.surfaces[k].near, t.surfaces[k].far, a, test); };
+    const auto fits = [&](std::size_t k) {
+      return belongs(t.surfaces[k].id, t.surfaces[k].near, t.surfaces[k].far, a, test);
+    };
     std::size_t k = last;
     if (!(k < t.surfaces.size() && fits(k))) {
       k = 0;
@@ -121,7 +121,8 @@ void collect_arrivals(const TileGrid& grid, int column, int row, std::span<const
                       std::size_t present, std::span<const Carried> fields, std::span<const BlockLists> lists,
                       const LightRule& light, const SurfaceTest& test, TileArrivals& out) {
   const Window& target = grid.window;
-  out.tile = {target.x0 + column * kTile, target.y0 + row * kTile, std::min(target.x0 + (column + 1) * kTile, target.x1),
+  out.tile = {target.x0 + column * kTile, target.y0 + row * kTile,
+              std::min(target.x0 + (column + 1) * kTile, target.x1),
               std::min(target.y0 + (row + 1) * kTile, target.y1)};
   out.around = int(std::ceil(grid.margin * kBinsPerPixel));
   out.bins = kTile * kBinsPerPixel + 2 * out.around;
@@ -143,15 +144,23 @@ void collect_arrivals(const TileGrid& grid, int column, int row, std::span<const
         for (int x = x0; x < x1; ++x) {
           const float ax = float(x + double(field[x].x) + ox), ay = float(y + double(field[x].y) + oy);
           if (!(ax >= low && ay >= low && ax < high && ay < high && valid[x] > 0)) continue;
-          Arrival a{ax, ay, field[x].z, 1, 1, source.present->id.empty() ? 0 : source.present->id.at(x, y),
-                    std::uint32_t(y - w.y0) << 16 | std::uint32_t(x - w.x0), std::uint32_t(f)};
+          Arrival a{ax,
+                    ay,
+                    field[x].z,
+                    1,
+                    1,
+                    source.present->id.empty() ? 0 : source.present->id.at(x, y),
+                    std::uint32_t(y - w.y0) << 16 | std::uint32_t(x - w.x0),
+                    std::uint32_t(f)};
           if (light.gain && f != present) {
-            const ShadingGain g = shading_gain(source, x, y, sources[present], glm::dvec2(ax, ay) + glm::dvec2(out.tile.x0, out.tile.y0),
-                                               {a.id, a.depth}, test, light.dead_zone, light.weight);
+            const ShadingGain g =
+                shading_gain(source, x, y, sources[present], glm::dvec2(ax, ay) + glm::dvec2(out.tile.x0, out.tile.y0),
+                             {a.id, a.depth}, test, light.dead_zone, light.weight);
             a.gain = g.gain, a.weight = g.weight;
           }
           out.unsorted.push_back(a);
-          out.bin_of.push_back(std::uint32_t(int((ay - low) * kBinsPerPixel) * out.bins + int((ax - low) * kBinsPerPixel)));
+          out.bin_of.push_back(
+              std::uint32_t(int((ay - low) * kBinsPerPixel) * out.bins + int((ax - low) * kBinsPerPixel)));
         }
       }
     }

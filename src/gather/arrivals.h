@@ -16,12 +16,12 @@ inline constexpr int kBinsPerPixel = 4;
 
 /// One carried sample.
 struct Arrival {
-  float x, y;            ///< where, pixels from the tile's corner
-  float depth;           ///< in the resolved frame
-  float gain, weight;    ///< what its light is multiplied with, and how much it counts, in (0, 1]
-  std::uint32_t id;      ///< of its object
-  std::uint32_t pixel;   ///< in its own frame: y * 65536 + x, from the window's corner
-  std::uint32_t frame;   ///< place in the window of frames
+  float x, y;           ///< where, pixels from the tile's corner
+  float depth;          ///< in the resolved frame
+  float gain, weight;   ///< what its light is multiplied with, and how much it counts, in (0, 1]
+  std::uint32_t id;     ///< of its object
+  std::uint32_t pixel;  ///< in its own frame: y * 65536 + x, from the window's corner
+  std::uint32_t frame;  ///< place in the window of frames
 };
 
 /// For each tile the blocks of a frame's pixels from which something arrives there.

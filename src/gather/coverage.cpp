@@ -87,8 +87,10 @@ void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arr
     const Track& t = tracks[f];
     // Samples of the frame that would arrive around the pixel if they moved with the surface.
     const glm::dvec2 shift = t.displacement + source.jitter + glm::dvec2(0.5);
-    const int x0 = std::max(int(std::ceil(x - reach - shift.x)), w.x0), y0 = std::max(int(std::ceil(y - reach - shift.y)), w.y0);
-    const int x1 = std::min(int(std::ceil(x + 1 + reach - shift.x)), w.x1), y1 = std::min(int(std::ceil(y + 1 + reach - shift.y)), w.y1);
+    const int x0 = std::max(int(std::ceil(x - reach - shift.x)), w.x0),
+              y0 = std::max(int(std::ceil(y - reach - shift.y)), w.y0);
+    const int x1 = std::min(int(std::ceil(x + 1 + reach - shift.x)), w.x1),
+              y1 = std::min(int(std::ceil(y + 1 + reach - shift.y)), w.y1);
     for (int v = y0; v < y1; ++v)
       for (int u = x0; u < x1; ++u) {
         if (!(source.present->valid.at(u, v) > 0)) continue;
@@ -107,7 +109,8 @@ void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arr
     scratch.hits.assign(area, 1);
     return;
   }
-  const std::size_t size = (scratch.px.size() + kCellLanes - 1) / kCellLanes * kCellLanes, cells = std::size_t(c.axis.count);
+  const std::size_t size = (scratch.px.size() + kCellLanes - 1) / kCellLanes * kCellLanes,
+                    cells = std::size_t(c.axis.count);
   scratch.is_hit.resize(size, 2);
   scratch.px.resize(size, 0), scratch.py.resize(size, 0);
   scratch.cx.resize(size * cells), scratch.cy.resize(size * cells);

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/reject.h"
 #include "gather/arrivals.h"
 #include "gather/gather_pixel.h"
+#include "gather/round_trip.h"
 #include "resolve/sample_weights.h"
 
 namespace varve {
@@ -25,7 +27,8 @@ std::vector<Carried> carry_all(std::span<const GatherSource> sources, std::size_
   fields[present] = carry_present(sources[present], workers);
   const auto followed = [&](std::size_t i) { return Followed{&sources[i], &fields[i]}; };
   for (std::size_t i = present + 1; i < sources.size(); ++i)
-    fields[i] = carry(sources[i], false, test, followed(i - 1), i - present > 1 ? followed(i - 2) : Followed{}, workers);
+    fields[i] =
+        carry(sources[i], false, test, followed(i - 1), i - present > 1 ? followed(i - 2) : Followed{}, workers);
   for (std::size_t i = present; i-- > 0;)
     fields[i] = carry(sources[i], true, test, followed(i + 1), present - i > 1 ? followed(i + 2) : Followed{}, workers);
   return fields;
@@ -55,50 +58,118 @@ double cell_sigma(const GatherParameters& parameters, std::size_t frames) {
   return std::max(parameters.sigma, 0.43 / std::sqrt(double(frames)));
 }
 
-/// Sums over the arrivals of a pixel.
-struct PixelResult {
-  glm::dvec4 color{0};
-  double weights = 0, squares = 0;              // of all weights; they sum to 1
-  double past = 0, past_squares = 0, future = 0, future_squares = 0;
-  double light = 0, light_squares = 0;          // luminance, centred at the first
-};
-
 double luminance(const glm::dvec4& c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; }
 
-PixelResult sum_pixel(const PixelContext& c, const PixelWeights& pixel) {
-  PixelResult r;
-  bool first = true;
+/// Weights of one side of time.
+struct SideWeights {
+  double sum = 0, squares = 0;
+  void add(double weight) { sum += weight, squares += weight * weight; }
+  float count() const { return squares > 0 ? float(sum * sum / squares) : 0; }
+};
+
+/// The one linear combination of samples that makes a pixel, for its color and for all that goes with it.
+struct PixelSums {
+  glm::dvec4 color{0};
+  SideWeights all, past, present, future;
+  double light = 0, light_squares = 0;  // luminance, centred at the first
+  double trust = 0;                     // sum of the arrivals' own weights
+  int arrivals = 0;
+};
+
+glm::dvec4 lit(const glm::vec4& sample, float gain) {
+  return glm::dvec4(sample) * glm::dvec4(double(gain), double(gain), double(gain), 1);
+}
+
+PixelSums sum_pixel(const PixelContext& c, const PixelWeights& pixel) {
+  PixelSums r;
   double shift = 0;
   for (std::size_t i = 0; i < pixel.weights.size(); ++i) {
     const Arrival* a = pixel.arrivals[i];
     if (!a) continue;
-    const GatherSource& source = c.sources[a->frame];
-    const Window& w = source.window();
-    glm::dvec4 color(source.present->color.at(w.x0 + int(a->pixel & 0xFFFF), w.y0 + int(a->pixel >> 16)));
-    const double gain = double(a->gain), weight = double(pixel.weights[i]);
-    color.r *= gain, color.g *= gain, color.b *= gain;
+    const double weight = double(pixel.weights[i]);
+    const glm::dvec4 color = lit(c.sources[a->frame].color(a->pixel), a->gain);
     r.color += color * weight;
-    r.weights += weight;
-    r.squares += weight * weight;
-    if (a->frame < c.present) r.past += weight, r.past_squares += weight * weight;
-    if (a->frame > c.present) r.future += weight, r.future_squares += weight * weight;
-    if (first) shift = luminance(color), first = false;
+    r.all.add(weight);
+    (a->frame < c.present ? r.past : a->frame > c.present ? r.future : r.present).add(weight);
+    if (r.arrivals++ == 0) shift = luminance(color);
     const double light = luminance(color) - shift;
     r.light += weight * light;
     r.light_squares += weight * light * light;
+    r.trust += double(a->weight);
   }
-  r.color /= r.weights;
   return r;
 }
 
-void write_pixel(Accumulated& out, const PixelResult& r, int x, int y) {
+glm::vec4 finite_color(const glm::dvec4& color) {
   const double limit = double(std::numeric_limits<float>::max());
-  glm::dvec4 color = r.color;
-  for (int k = 0; k < 4; ++k) color[k] = std::clamp(color[k], -limit, limit);
-  out.history.color.at(x, y) = glm::vec4(color);
-  const double spread = r.squares / (r.weights * r.weights);
+  glm::vec4 out;
+  for (int k = 0; k < 4; ++k) out[k] = float(std::clamp(color[k], -limit, limit));
+  return out;
+}
+
+void write_diagnostics(AccumulateDiagnostics& d, const PixelSums& r, const PixelWeights& pixel, int x, int y) {
+  if (!d.weight.empty()) d.weight.at(x, y) = float(1 - r.present.sum / r.all.sum);
+  if (!d.reject.empty() && !(r.past.sum + r.future.sum > 0)) d.reject.at(x, y) = kRejectEmptyHistory;
+  if (!d.count_past.empty()) d.count_past.at(x, y) = r.past.count(), d.count_future.at(x, y) = r.future.count();
+  if (d.variance.empty()) return;
+  const double mean = r.light / r.all.sum, spread = std::max(r.light_squares / r.all.sum - mean * mean, 0.0);
+  const double squares = r.all.squares / (r.all.sum * r.all.sum);
+  d.variance.at(x, y) = float(spread * squares);
+  d.surfaces.at(x, y) = float(pixel.surfaces);
+  d.gain.at(x, y) = float(r.trust / r.arrivals);
+  std::uint64_t seen[8] = {};  // a bit for each frame of the widest window
+  int frames = 0;
+  for (const Arrival* a : pixel.arrivals)
+    if (a) {
+      std::uint64_t& word = seen[a->frame / 64 % 8];
+      const std::uint64_t bit = std::uint64_t(1) << (a->frame % 64);
+      frames += (word & bit) == 0;
+      word |= bit;
+    }
+  d.frames.at(x, y) = float(frames);
+}
+
+/// Everything of one pixel. Companions share the color's weights, so that what added up to it still does.
+void write_pixel(Accumulated& out, const PixelContext& c, const PixelWeights& pixel, int x, int y) {
+  const PixelSums r = sum_pixel(c, pixel);
+  out.history.color.at(x, y) = finite_color(r.color / r.all.sum);
+  const double spread = r.all.squares / (r.all.sum * r.all.sum);
   out.history.total.at(x, y) = float(std::min(1 / spread, 1e6));
   out.history.spread.at(x, y) = float(spread);
+  write_diagnostics(out.diagnostics, r, pixel, x, y);
+  for (std::size_t k = 0; k < out.history.companions.size(); ++k) {
+    glm::dvec4 sum(0);
+    for (std::size_t i = 0; i < pixel.weights.size(); ++i)
+      if (const Arrival* a = pixel.arrivals[i])
+        sum += glm::dvec4(c.sources[a->frame].companion(k, a->pixel)) * (double(a->gain) * double(pixel.weights[i]));
+    out.history.companions[k].at(x, y) = finite_color(sum / r.all.sum);
+  }
+}
+
+Accumulated make_output(const Present& present, const DiagnosticsWanted& wanted) {
+  const Window& w = present.color.window();
+  Accumulated out;
+  out.history.color = Plane<glm::vec4>(w);
+  out.history.total = Plane<float>(w, 0, 0.0f);
+  out.history.spread = Plane<float>(w, 0, 0.0f);
+  for (std::size_t k = 0; k < present.companions.size(); ++k) out.history.companions.emplace_back(w);
+  AccumulateDiagnostics& d = out.diagnostics;
+  if (wanted.weight) d.weight = Plane<float>(w, 0, 0.0f);
+  if (wanted.reject) d.reject = Plane<std::uint32_t>(w, 0, 0u);
+  if (wanted.counts)
+    for (Plane<float>* plane : {&d.count_past, &d.count_future}) *plane = Plane<float>(w, 0, 0.0f);
+  if (wanted.gather)
+    for (Plane<float>* plane : {&d.variance, &d.frames, &d.surfaces, &d.gain, &d.round_trip})
+      *plane = Plane<float>(w, 0, 0.0f);
+  return out;
+}
+
+/// A pixel that no sample reaches: what stands in for its own.
+void keep_present(Accumulated& out, const Present& present, int x, int y) {
+  out.history.color.at(x, y) = present.color.at(x, y);
+  for (std::size_t k = 0; k < out.history.companions.size(); ++k)
+    out.history.companions[k].at(x, y) = present.companions[k].at(x, y);
+  if (!out.diagnostics.reject.empty()) out.diagnostics.reject.at(x, y) = kRejectEmptyHistory | kRejectPresent;
 }
 
 }  // namespace
@@ -115,13 +186,7 @@ SurfaceTest surface_test(const Present& present) {
 Accumulated gather(std::span<const GatherSource> sources, std::size_t present, const GatherParameters& parameters,
                    const SurfaceTest& test, const DiagnosticsWanted& wanted, Workers& workers, Isa isa) {
   const Window& w = sources[present].window();
-  Accumulated out;
-  out.history.color = Plane<glm::vec4>(w);
-  out.history.total = Plane<float>(w, 0, 0.0f);
-  out.history.spread = Plane<float>(w, 0, 0.0f);
-  if (wanted.weight) out.diagnostics.weight = Plane<float>(w, 0, 0.0f);
-  if (wanted.clip) out.diagnostics.clip = Plane<float>(w, 0, 0.0f);
-  if (wanted.reject) out.diagnostics.reject = Plane<std::uint32_t>(w, 0, 0u);
+  Accumulated out = make_output(*sources[present].present, wanted);
   if (w.empty()) return out;
 
   const std::vector<Carried> fields = carry_all(sources, present, test, workers);
@@ -151,13 +216,15 @@ Accumulated gather(std::span<const GatherSource> sources, std::size_t present, c
       for (int x = here.tile.x0; x < here.tile.x1; ++x) {
         const PixelWeights pixel = weigh_pixel(c, x, y, scratch[std::size_t(worker)]);
         if (pixel.arrivals.empty()) {
-          out.history.color.at(x, y) = sources[present].present->color.at(x, y);
+          keep_present(out, *sources[present].present, x, y);
           ++restarted[std::size_t(worker)];
           continue;
         }
-        write_pixel(out, sum_pixel(c, pixel), x, y);
+        write_pixel(out, c, pixel, x, y);
       }
   });
+  if (wanted.gather && present > 0)
+    measure_round_trip(sources[present], sources[present - 1], test, out.diagnostics.round_trip, workers);
   for (const std::size_t n : restarted) out.counts.restarted += n;
   return out;
 }

@@ -29,7 +29,8 @@ struct Surfaces {
 void find_arrivals(const PixelContext& c, int x, int y, std::vector<const Arrival*>& found) {
   const TileArrivals& t = *c.arrivals;
   const int reach = t.around;
-  const int bx = (x - t.tile.x0) * kBinsPerPixel, by = (y - t.tile.y0) * kBinsPerPixel;  // of the pixel's corner, shifted
+  const int bx = (x - t.tile.x0) * kBinsPerPixel,
+            by = (y - t.tile.y0) * kBinsPerPixel;  // of the pixel's corner, shifted
   const int edge = kBinsPerPixel + 2 * reach;
   found.clear();
   for (int row = by; row < by + edge; ++row) {
@@ -70,9 +71,8 @@ Surfaces find_surfaces(const PixelContext& c, const std::vector<const Arrival*>&
     last = k;
   }
   for (int k = 0; k < s.count; ++k) s.front_to_back[std::size_t(k)] = k;
-  std::stable_sort(s.front_to_back.begin(), s.front_to_back.begin() + s.count, [&](int a, int b) {
-    return s.list[std::size_t(a)].depth() < s.list[std::size_t(b)].depth();
-  });
+  std::stable_sort(s.front_to_back.begin(), s.front_to_back.begin() + s.count,
+                   [&](int a, int b) { return s.list[std::size_t(a)].depth() < s.list[std::size_t(b)].depth(); });
   return s;
 }
 
@@ -142,13 +142,14 @@ PixelWeights weigh_pixel(const PixelContext& c, int x, int y, PixelScratch& scra
     c.kernel->cell_sums(scratch.wx.data() + begin, scratch.wy.data() + begin, std::ptrdiff_t(size), surface.padded,
                         cells, scratch.sums.data());
     for (std::size_t cell = 0; cell < area; ++cell) {
-      const double covered = last ? 1.0 : double(scratch.hits[cell]) / (double(scratch.hits[cell]) + double(scratch.misses[cell]));
+      const double covered =
+          last ? 1.0 : double(scratch.hits[cell]) / (double(scratch.hits[cell]) + double(scratch.misses[cell]));
       const double filter = c.axis.share[cell / std::size_t(cells)] * c.axis.share[cell % std::size_t(cells)];
       scratch.share[cell] = float(filter * scratch.through[cell] * covered / double(scratch.sums[cell]));
       scratch.through[cell] *= 1 - covered;
     }
-    c.kernel->sample_weights(scratch.wx.data() + begin, scratch.wy.data() + begin, std::ptrdiff_t(size),
-                             surface.padded, cells, scratch.share.data(), scratch.result.data() + begin);
+    c.kernel->sample_weights(scratch.wx.data() + begin, scratch.wy.data() + begin, std::ptrdiff_t(size), surface.padded,
+                             cells, scratch.share.data(), scratch.result.data() + begin);
   }
   return {scratch.ordered, scratch.result, s.count};
 }

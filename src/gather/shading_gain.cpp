@@ -51,8 +51,8 @@ Plane<float> local_light(const Plane<glm::vec4>& color, const Present& present, 
   Plane<float> own(w);  // luminance where a pixel takes part, else NaN
   workers.for_rows(w.y0, w.y1, [&](int y) {
     for (int x = w.x0; x < w.x1; ++x)
-      own.at(x, y) = is_pure(present, x, y, test) ? float(luminance(color.at(x, y)))
-                                                  : std::numeric_limits<float>::quiet_NaN();
+      own.at(x, y) =
+          is_pure(present, x, y, test) ? float(luminance(color.at(x, y))) : std::numeric_limits<float>::quiet_NaN();
   });
   Plane<LightSum> rows(w);
   workers.for_rows(w.y0, w.y1, [&](int y) {

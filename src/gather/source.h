@@ -16,14 +16,22 @@ namespace varve {
 /// the window of present->color.
 struct GatherSource {
   const Present* present = nullptr;
-  glm::dvec2 jitter{0};                         ///< sample position minus pixel centre, pixels
-  const Plane<glm::vec2>* backward = nullptr;   ///< to the frame before; null: at rest
-  const Plane<glm::vec2>* forward = nullptr;    ///< to the frame after; null: at rest
-  const Plane<float>* local_light = nullptr;    ///< mean luminance around each pixel on its surface; null: no gain
+  glm::dvec2 jitter{0};                        ///< sample position minus pixel centre, pixels
+  const Plane<glm::vec2>* backward = nullptr;  ///< to the frame before; null: at rest
+  const Plane<glm::vec2>* forward = nullptr;   ///< to the frame after; null: at rest
+  const Plane<float>* local_light = nullptr;   ///< mean luminance around each pixel on its surface; null: no gain
 
   const Window& window() const { return present->color.window(); }
   /// Position of the sample of pixel (x, y).
   glm::dvec2 position(int x, int y) const { return {x + 0.5 + jitter.x, y + 0.5 + jitter.y}; }
+  /// Color and companion of a pixel given as y * 65536 + x from the window's corner.
+  const glm::vec4& color(std::uint32_t pixel) const { return packed(present->color, pixel); }
+  const glm::vec4& companion(std::size_t k, std::uint32_t pixel) const { return packed(present->companions[k], pixel); }
+
+ private:
+  static const glm::vec4& packed(const Plane<glm::vec4>& plane, std::uint32_t pixel) {
+    return plane.row(plane.window().y0 + int(pixel >> 16))[pixel & 0xFFFF];
+  }
 };
 
 /// What a sample shows, as far as the files tell: an object and a distance.

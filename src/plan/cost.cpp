@@ -4,6 +4,8 @@
 #include <set>
 
 #include "diagnose/aov.h"
+#include "plan/gather_plan.h"
+#include "plan/two_sided_plan.h"
 
 namespace varve {
 namespace {
@@ -23,6 +25,9 @@ constexpr CodecCost kNone{0.2, 0.9}, kLight{1.5, 3}, kZip{1.9, 6}, kPiz{5, 11}, 
 // vectors, depth test and diagnostics are set by their traffic and not measured yet.
 constexpr double kConvert = 1.5, kSanitize = 1.6, kMotion = 1.1, kInvert = 12, kDilate = 8.5, kHistory = 22,
                  kDepthTest = 1, kSampleWeights = 20, kBox = 28, kBlend = 8, kDiagnostic = 0.5;
+
+// Two-sided passes each frame twice in each direction.
+constexpr double kTwoSidedPasses = 4;
 
 CodecCost cost_of(Compression compression) {
   switch (compression) {
@@ -92,13 +97,10 @@ std::size_t color_bytes(const SequenceInfo& info) {
   return bytes;
 }
 
-std::size_t diagnostic_bytes_per_pixel(const OutputRequest& output) {
+std::size_t diagnostic_bytes_per_pixel(const OutputRequest& output, Accumulator accumulator) {
   std::size_t bytes = 0;
-  for (const Aov& aov : diagnostic_aovs()) {
-    const bool asked = std::any_of(output.aovs.begin(), output.aovs.end(),
-                                   [&](const std::string& name) { return name == aov.name || name == "all"; });
-    if (asked) bytes += std::max<std::size_t>(1, aov.components.size()) * bytes_per_pixel(aov.type);
-  }
+  for (const Aov* aov : planned_aovs(output, accumulator))
+    bytes += std::max<std::size_t>(1, aov->components.size()) * bytes_per_pixel(aov->type);
   return bytes;
 }
 
@@ -114,6 +116,8 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
     if (!whole.contains({ref.file, ref.part}))
       raw += bytes_of(part_of(info, ref), part_of(info, ref).channels[std::size_t(ref.channel)]);
   const bool depth_test = plan.use_depth && parameters.recursive.disocclusion == Disocclusion::depth;
+  const bool two_sided = parameters.accumulator == Accumulator::two_sided;
+  const bool gathers = parameters.accumulator == Accumulator::gather;
   std::size_t histories = 0, at_work = 0;
   for (const Subject& subject : info.first.subjects) {
     const std::size_t pixels = pixels_of(info, subject);
@@ -121,23 +125,27 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
     // A companion's sample, and its values of the last frame and of this one.
     const std::size_t companions = subject.companions.size();
     histories += pixels * 2 * 16 * companions;
+    if (gathers) histories += pixels * gather_bytes_per_pixel(parameters);
+    if (two_sided)  // the past of the next block too, three frames' vectors
+      histories += pixels * (24 + 3 * 20 + waiting_bytes_per_pixel(parameters, output));
     at_work = std::max(at_work, pixels * (16 + 16 * companions + (plan.use_motion ? 8 : 0) + (plan.use_depth ? 4 : 0) +
-                                          diagnostic_bytes_per_pixel(output)));
+                                          diagnostic_bytes_per_pixel(output, parameters.accumulator)));
   }
   return kBaseBytes + raw + histories + at_work;
 }
 
 double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parameters& parameters,
                         const OutputRequest& output, int threads) {
+  const bool two_sided = parameters.accumulator == Accumulator::two_sided;
   double nanoseconds = 0;
   std::set<PartKey> read;
   for (const ChannelRef ref : plan.channels) read.insert({ref.file, ref.part});
   for (const auto& [file, index] :
        read) {  // compressed chunks hold all channels: a part is decoded whole or not at all
     const Part& part = part_of(info, {file, index, 0});
-    nanoseconds += double(bytes_of(part)) * cost_of(part.compression).decode;
+    nanoseconds += double(bytes_of(part)) * cost_of(part.compression).decode * (two_sided ? 3 : 1);
   }
-  const std::size_t diagnostic_bytes = diagnostic_bytes_per_pixel(output);
+  const std::size_t diagnostic_bytes = diagnostic_bytes_per_pixel(output, parameters.accumulator);
   if (output.keep_channels) {
     for (const auto& [file, index] : rewritten_parts(info)) {
       const Part& part = part_of(info, {file, index, 0});
@@ -148,14 +156,21 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
     nanoseconds += double(color_bytes(info)) * kZip.encode;
   }
   const RecursiveParameters& recursive = parameters.recursive;
-  double per_pixel = kConvert + kSanitize + kBlend + kHistory + double(diagnostic_bytes) * (kDiagnostic + kZip.encode);
+  double per_pixel = kConvert + kSanitize + double(diagnostic_bytes) * (kDiagnostic + kZip.encode);
+  if (parameters.accumulator == Accumulator::gather) {
+    per_pixel += gather_nanoseconds(parameters);
+    for (const Subject& subject : info.first.subjects) nanoseconds += double(pixels_of(info, subject)) * per_pixel;
+    return nanoseconds * 1e-9 / std::max(1, threads);
+  }
+  per_pixel += kBlend + kHistory;
   if (plan.use_motion && parameters.motion.dilation != Dilation::none) per_pixel += kDilate;
   if (recursive.disocclusion == Disocclusion::depth) per_pixel += kDepthTest;
   if (recursive.sample_filter != SampleFilter::none) per_pixel += kSampleWeights;
   if (parameters.rectify.box != Box::none) per_pixel += kBox * std::max(1, parameters.rectify.window) / 3;
+  const double passes = two_sided ? kTwoSidedPasses : 1;
   for (const Subject& subject : info.first.subjects) {
     const double motion = !plan.use_motion ? 0 : subject.backward ? kMotion : subject.forward ? kMotion + kInvert : 0;
-    nanoseconds += double(pixels_of(info, subject)) * (per_pixel + motion);
+    nanoseconds += double(pixels_of(info, subject)) * (per_pixel + motion) * passes;
   }
   return nanoseconds * 1e-9 / std::max(1, threads);
 }

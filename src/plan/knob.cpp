@@ -34,6 +34,10 @@ constexpr Word<bool> kSwitches[] = {
     {"on", true, "no overshoot beside bright edges"},
     {"off", false, "the filter as it is"},
 };
+constexpr Word<bool> kDiscounts[] = {
+    {"on", true, "a side weighs less the farther it had to be moved"},
+    {"off", false, "a side keeps its weight"},
+};
 constexpr Word<Disocclusion> kDisocclusions[] = {
     {"window", Disocclusion::window, "only where the previous position lies outside the data window"},
     {"depth", Disocclusion::depth, "also where another surface lay there; needs depth"},
@@ -87,8 +91,9 @@ Value<Parameters> number(At at, Range range) {
 
 std::vector<Knob> knobs() {
   constexpr auto basic = Tier::basic, advanced = Tier::advanced, expert = Tier::expert;
-  constexpr std::string_view motion = "Motion and depth", history = "History", rectify = "Rectification";
-  constexpr std::string_view around = "Gather";
+  constexpr std::string_view motion = "Motion and depth", history = "History", rectify = "Rectification",
+                             around = "Gather (--accumulator gather)",
+                             sides = "Past and future (--accumulator two-sided)";
   return {
       {"dilation", "WORD", motion, advanced, "Whose vector a pixel follows.",
        word(
@@ -152,6 +157,21 @@ std::vector<Knob> knobs() {
        "Relative change of light at which a frame counts half. Small values leave out frames of other light, large "
        "ones trust the gain.",
        number([](auto& p) -> auto& { return p.gather.gain_weight; }, {0, 1000, true})},
+
+      {"look-ahead", "FRAMES", sides, advanced,
+       "Frames that are looked at, at least, before and after each one; also the length of the blocks they are worked "
+       "in. "
+       "0 takes as many as hold 99 % of the weight: 44 at --alpha 0.1.",
+       number([](auto& p) -> auto& { return p.two_sided.look_ahead; }, {0, 10000})},
+      {"clip-discount", "WORD", sides, advanced,
+       "Whether past or future lose weight where rectification moved them: by the square "
+       "of the distance over the variance of the neighbors.",
+       word(
+           [](auto& p) -> auto& { return p.two_sided.clip_discount; }, kDiscounts)},
+      {"return-tolerance", "PIXELS", sides, expert,
+       "How far a vector and the vector that leads back may miss each other, besides a "
+       "hundredth of their lengths, before the pixel restarts. 0: no test. Needs vectors in both directions.",
+       number([](auto& p) -> auto& { return p.two_sided.return_tolerance; }, {0, 1000})},
 
       {"box", "WORD", rectify, advanced, "The colors that history may have, made from the neighbors of the present.",
        word(

@@ -8,6 +8,8 @@
 #include "base/parallel.h"
 #include "diagnose/aov.h"
 #include "plan/cost.h"
+#include "plan/gather_plan.h"
+#include "plan/two_sided_plan.h"
 
 namespace varve {
 namespace {
@@ -40,7 +42,8 @@ void check_possible(const SequenceInfo& info, const Parameters& parameters) {
                       "the depth test needs a depth, and " + layer_text(subject) +
                           " has none; name it with --map depth=CHANNEL or --depth-file FILE, or "
                           "give --disocclusion window");
-  if (parameters.recursive.sample_filter == SampleFilter::none || info.frames_with_jitter == int(info.frames.size()))
+  if (parameters.recursive.sample_filter == SampleFilter::none || parameters.accumulator == Accumulator::gather ||
+      info.frames_with_jitter == int(info.frames.size()))
     return;
   const std::string known = info.frames_with_jitter == 0
                                 ? "is not known"
@@ -63,11 +66,12 @@ class Planner {
     plan_.use_motion = moving > 0;
     if (moving == 0) {
       add("motion", false, "no vectors, so every pixel follows itself");
-      add("invert forward", false, "no vectors");
+      if (parameters_.accumulator != Accumulator::gather) add("invert forward", false, "no vectors");
       return;
     }
     const auto moves = std::find_if(info_.first.subjects.begin(), info_.first.subjects.end(), has_motion);
     add("motion", true, "vectors of convention " + moves->convention + " are decoded to pixels" + share(moving));
+    if (parameters_.accumulator == Accumulator::gather) return;  // it says itself what it makes of them
     if (inverted == 0) {
       add("invert forward", false, "there are vectors to the previous frame");
       return;
@@ -78,6 +82,29 @@ class Planner {
     add("invert forward", true,
         std::string("only vectors to the next frame are there: those of the frame before are carried forward") +
             share(inverted) + (depth ? "; depth tells which surface is in front" : ""));
+  }
+
+  void gather() {
+    refuse_spill();
+    for (PlannedPass& pass : gather_passes(info_, parameters_, plan_)) plan_.passes.push_back(std::move(pass));
+  }
+
+  void refuse_spill() const {
+    if (!output_.spill_folder.empty())
+      throw Failure(ExitCode::usage, "--spill keeps the future of --accumulator two-sided; leave it out");
+  }
+
+  void sides() {
+    const bool two_sided = parameters_.accumulator == Accumulator::two_sided;
+    if (!two_sided) return refuse_spill();
+    plan_.use_forward = true;
+    const auto inverts = [](const Subject& s) { return has_motion(s) && !(s.backward && s.forward); };
+    const std::size_t inverted = count_if(info_, inverts);
+    const bool depth = std::any_of(info_.first.subjects.begin(), info_.first.subjects.end(),
+                                   [&](const Subject& s) { return inverts(s) && s.depth; });
+    if (depth) plan_.use_depth = true;
+    plan_.passes.push_back(motion_of_both_sides(count_if(info_, has_motion) > 0, inverted > 0, depth, share(inverted)));
+    plan_.passes.push_back(past_and_future(parameters_, output_));
   }
 
   void dilate() {
@@ -103,14 +130,15 @@ class Planner {
     constexpr std::array<const char*, 4> kFilters = {"bilinear", "16-tap Catmull-Rom", "9-tap Catmull-Rom",
                                                      "5-tap Catmull-Rom"};
     const std::string filter = kFilters[std::size_t(parameters_.recursive.history_filter)];
-    if (info_.frames.size() < 2) {
+    if (stands_alone()) {
       add("history", false, "there is one frame only, so nothing came before");
       add("window test", false, "no history");
       add("depth test", false, "no history");
       return;
     }
-    add("history", true,
-        plan_.use_motion ? "one frame back along the vectors, " + filter : "one frame back at the same pixel");
+    const std::string way =
+        parameters_.accumulator == Accumulator::two_sided ? "one frame back, and one ahead, " : "one frame back ";
+    add("history", true, plan_.use_motion ? way + "along the vectors, " + filter : way + "at the same pixel");
     add("window test", true,
         "history outside the data window is no data" + std::string(info_.windows_move ? ", and the window moves" : ""));
     const bool test = parameters_.recursive.disocclusion == Disocclusion::depth;
@@ -139,7 +167,7 @@ class Planner {
       add("rectify", false, "no box");
       return;
     }
-    if (info_.frames.size() < 2) {
+    if (stands_alone()) {
       add("neighborhood box", false, "no history to hold against it");
       add("rectify", false, "no history");
       return;
@@ -158,6 +186,7 @@ class Planner {
 
   void blend() {
     const RecursiveParameters& r = parameters_.recursive;
+    if (parameters_.accumulator == Accumulator::two_sided) return add("blend", true, blend_of_both_sides(parameters_));
     add("blend", true,
         r.alpha_rule == AlphaRule::fixed
             ? "the present weighs " + short_number(r.alpha)
@@ -165,13 +194,9 @@ class Planner {
   }
 
   void outputs() {
+    planned_aovs(output_, parameters_.accumulator);
     std::string names;
-    for (const std::string& name : output_.aovs) {
-      if (name != "all" && !find_aov(name))
-        throw Failure(ExitCode::usage,
-                      "--aov " + name + ": there is no such diagnostic plane; varve help aovs lists them");
-      names += (names.empty() ? "" : ", ") + name;
-    }
+    for (const std::string& name : output_.aovs) names += (names.empty() ? "" : ", ") + name;
     add("diagnostics", !names.empty(),
         names.empty() ? "none asked for"
                       : names + (output_.diagnostics_apart ? ", in files of their own" : ", in the output"));
@@ -206,6 +231,9 @@ class Planner {
   void add(const char* name, bool runs, std::string reason) { plan_.passes.push_back({name, runs, std::move(reason)}); }
 
  private:
+  // One frame, and none around it to look at.
+  bool stands_alone() const { return info_.frames.size() < 2 && parameters_.accumulator == Accumulator::recursive; }
+
   // " (2 of 3 layers)" when a pass does not concern all.
   std::string share(std::size_t count) const {
     return count == subjects_ ? "" : " (" + std::to_string(count) + " of " + std::to_string(subjects_) + " layers)";
@@ -220,20 +248,62 @@ class Planner {
 
 }  // namespace
 
+namespace {
+
+unsigned filled_by(Accumulator accumulator) {
+  switch (accumulator) {
+    case Accumulator::recursive:
+      return kByRecursive;
+    case Accumulator::two_sided:
+      return kByTwoSided;
+    case Accumulator::gather:
+      return kByGather;
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::vector<const Aov*> planned_aovs(const OutputRequest& request, Accumulator accumulator) {
+  const auto can_fill = [&](const Aov& aov) { return (aov.filled_by & filled_by(accumulator)) != 0; };
+  std::vector<const Aov*> planned;
+  for (const std::string& name : request.aovs) {
+    if (name == "all") {
+      planned.clear();
+      for (const Aov& aov : diagnostic_aovs())
+        if (can_fill(aov)) planned.push_back(&aov);
+      return planned;
+    }
+    const Aov* aov = find_aov(name);
+    if (!aov)
+      throw Failure(ExitCode::usage,
+                    "--aov " + name + ": there is no such diagnostic plane; varve help aovs lists them");
+    if (!can_fill(*aov))
+      throw Failure(ExitCode::usage, "--aov " + name +
+                                         " has nothing to show with this --accumulator; leave the plane out, or give " +
+                                         accumulators_of(*aov));
+    planned.push_back(aov);
+  }
+  return planned;
+}
+
 Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const OutputRequest& output, int threads) {
   check_possible(info, parameters);
   Plan plan;
   Planner planner(info, parameters, output, plan);
-  if (parameters.accumulator == Accumulator::gather)
-    plan.use_depth = plan.use_id = plan.use_forward = true;
   planner.add("read", true, "");
   planner.add("sanitize", true, "pixels that are not finite are kept from spreading");
   planner.motion();
-  planner.dilate();
-  planner.history();
-  planner.sample_weights();
-  planner.rectify();
-  planner.blend();
+  if (parameters.accumulator == Accumulator::gather) {
+    planner.gather();
+  } else {
+    planner.sides();
+    planner.dilate();
+    planner.history();
+    planner.sample_weights();
+    planner.rectify();
+    planner.blend();
+  }
   planner.outputs();
   planner.channels();
   std::size_t present = 0;

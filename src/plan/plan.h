@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/aov.h"
 #include "plan/parameters.h"
 #include "plan/probe.h"
 
@@ -21,7 +22,12 @@ struct OutputRequest {
   std::vector<std::string> aovs;   ///< names of the diagnostic table; {"all"}
   bool diagnostics_apart = false;  ///< in files of their own
   bool keep_channels = true;       ///< pass the other channels and parts through
+  std::string spill_folder;        ///< where two-sided keeps the future of a block; empty: in memory
 };
+
+/// The diagnostic planes that are asked for; "all" means those that the accumulator can fill. Throws Failure(usage) for
+/// one that does not exist or that it cannot.
+std::vector<const Aov*> planned_aovs(const OutputRequest& request, Accumulator accumulator);
 
 struct Plan {
   std::vector<PlannedPass> passes;

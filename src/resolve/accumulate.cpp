@@ -134,17 +134,20 @@ void view_history(AccumulateView& v, const Present& present, const History& prev
   }
 }
 
+void view_diagnostics(AccumulateView& v, const Window& w, AccumulateDiagnostics& out, const DiagnosticsWanted& wanted) {
+  if (wanted.clip) out.clip = Plane<float>(w);
+  if (wanted.weight) out.weight = Plane<float>(w);
+  if (wanted.reject) out.reject = Plane<std::uint32_t>(w);
+  v.out_clip = write_rows(out.clip);
+  v.out_weight = write_rows(out.weight);
+  if (wanted.reject) v.out_reject = {out.reject.row(w.y0), out.reject.stride()};
+}
+
 void view_output(AccumulateView& v, Accumulated& out, const DiagnosticsWanted& wanted) {
-  const Window& w = out.history.color.window();
-  if (wanted.clip) out.diagnostics.clip = Plane<float>(w);
-  if (wanted.weight) out.diagnostics.weight = Plane<float>(w);
-  if (wanted.reject) out.diagnostics.reject = Plane<std::uint32_t>(w);
+  view_diagnostics(v, out.history.color.window(), out.diagnostics, wanted);
   v.out_color = write_rows(out.history.color);
   v.out_total = write_rows(out.history.total);
   v.out_spread = write_rows(out.history.spread);
-  v.out_clip = write_rows(out.diagnostics.clip);
-  v.out_weight = write_rows(out.diagnostics.weight);
-  if (wanted.reject) v.out_reject = {out.diagnostics.reject.row(w.y0), out.diagnostics.reject.stride()};
   v.out_rows_valid = out.history.rows_valid.data();
 }
 
@@ -162,7 +165,9 @@ void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const
   v.gamma = rectify.gamma;
 }
 
-AccumulateCounts run_rows(const AccumulateView& v, Isa isa, Workers& workers) {
+/// `fetched` and `rectified` may be null; a `rectified` stands in place of the blend.
+AccumulateCounts run_rows(const AccumulateView& v, const RowPass* fetched, const RowPass* rectified, Isa isa,
+                          Workers& workers) {
   const RowKernel kernel = kernel_for(isa);
   std::vector<Scratch> scratch;
   for (int i = 0; i < workers.count(); ++i) scratch.emplace_back(v.width);
@@ -173,8 +178,12 @@ AccumulateCounts run_rows(const AccumulateView& v, Isa isa, Workers& workers) {
     const int end = std::min(v.height, int(band + 1) * kBand);
     for (int y = int(band) * kBand; y < end; ++y) {
       kernel.fetch_history(v, y, rows);
+      if (fetched) (*fetched)(v, y, rows, worker);
       kernel.rectify_history(v, y, rows, counts[std::size_t(worker)]);
-      kernel.blend_present(v, y, rows, counts[std::size_t(worker)]);
+      if (rectified)
+        (*rectified)(v, y, rows, worker);
+      else
+        kernel.blend_present(v, y, rows, counts[std::size_t(worker)]);
     }
   });
   AccumulateCounts sum;
@@ -199,7 +208,7 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
   view_output(v, out, wanted);
   view_choices(v, recursive, rectify);
   v.restart_bit = restart_bit;
-  out.counts = run_rows(v, isa, workers);
+  out.counts = run_rows(v, nullptr, nullptr, isa, workers);
   if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty())
     out.history.depth = present.depth.clone();
   return out;
@@ -216,8 +225,23 @@ History predict(const Present& present, const History& previous, const Recursive
   view_choices(v, recursive, rectify);
   v.anchor = BoxAnchor::mean;
   v.leave_present_out = true;
-  run_rows(v, Isa::automatic, workers);
+  run_rows(v, nullptr, nullptr, Isa::automatic, workers);
   return std::move(out.history);
+}
+
+AccumulateCounts visit_history(const Present& present, const History& previous, const RecursiveParameters& recursive,
+                               const RectifyParameters& rectify, std::optional<glm::dvec2> jitter,
+                               std::uint32_t restart_bit, const DiagnosticsWanted& wanted,
+                               AccumulateDiagnostics& diagnostics, const RowPass& fetched, const RowPass& rectified,
+                               Workers& workers, Isa isa) {
+  if (present.color.window().empty()) return {};
+  AccumulateView v{};
+  const PresentView made = view_present(v, present, rectify, recursive.sample_filter, jitter, workers);
+  view_history(v, present, previous, recursive.disocclusion);
+  view_diagnostics(v, present.color.window(), diagnostics, wanted);
+  view_choices(v, recursive, rectify);
+  v.restart_bit = restart_bit;
+  return run_rows(v, &fetched, &rectified, isa, workers);
 }
 
 }  // namespace varve

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -52,10 +53,18 @@ struct History {
 struct AccumulateDiagnostics {
   Plane<float> clip, weight;
   Plane<std::uint32_t> reject;
+  // Only of accumulators that look ahead; `reject` is then that of the past.
+  Plane<float> count_past, count_future;
+  Plane<std::uint32_t> reject_future;
+  Plane<float> variance, frames, surfaces, gain, round_trip;  // only of the gather
 };
 
+struct AccumulateView;  // resolve/accumulate_row.h
+struct RowScratch;
+
 struct DiagnosticsWanted {
-  bool clip = false, weight = false, reject = false;
+  bool clip = false, weight = false, reject = false, counts = false;
+  bool gather = false;  ///< what only the gather fills
 };
 
 struct AccumulateCounts {
@@ -87,5 +96,18 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
 /// the difference to the sample favors tight boxes. For ranking settings see diagnose/leave_out.h.
 History predict(const Present& present, const History& previous, const RecursiveParameters& recursive,
                 const RectifyParameters& rectify, Workers& workers);
+
+/// What a caller does with one row, in place of the blend. `worker` names scratch space that no other row uses
+/// meanwhile.
+using RowPass = std::function<void(const AccumulateView& view, int y, const RowScratch& scratch, int worker)>;
+
+/// The history as accumulate() fetches and rectifies it, row by row, for accumulators that blend by rules of their own:
+/// `fetched` sees each row before rectification, `rectified` after it. The view has the present, and of the outputs
+/// only the planes of `diagnostics` that are wanted; of these `clip` is filled here. Counts: only `clipped`.
+AccumulateCounts visit_history(const Present& present, const History& previous, const RecursiveParameters& recursive,
+                               const RectifyParameters& rectify, std::optional<glm::dvec2> jitter,
+                               std::uint32_t restart_bit, const DiagnosticsWanted& wanted,
+                               AccumulateDiagnostics& diagnostics, const RowPass& fetched, const RowPass& rectified,
+                               Workers& workers, Isa isa = Isa::automatic);
 
 }  // namespace varve

@@ -32,6 +32,7 @@ class FrameWindow {
   }
   /// A frame that is held.
   const SourceFrame& operator[](std::size_t index) const { return frames_.at(index); }
+  SourceFrame& operator[](std::size_t index) { return frames_.at(index); }
 
  private:
   std::function<SourceFrame(std::size_t)> read_;

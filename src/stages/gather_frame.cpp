@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "gather/opposite_vectors.h"
+#include "gather/round_trip.h"
 #include "gather/shading_gain.h"
 
 namespace varve {
@@ -15,6 +16,7 @@ struct SubjectFrames {
   const FrameWindow& window;
   std::size_t subject;
   std::size_t first, last;  // held, of one shot
+  const GatherParameters& parameters;
   GatherMemory& memory;
   SurfaceTest test;
   Workers& workers;
@@ -33,10 +35,12 @@ struct SubjectFrames {
     if (to < first || to > last) return nullptr;
     const bool future = to > i;
     const Plane<glm::vec2>&stored = future ? present(i).forward : present(i).motion,
-                     &back = future ? present(to).motion : present(to).forward;
-    if (!stored.empty()) return &stored;
-    if (back.empty()) return nullptr;
+          &back = future ? present(to).motion : present(to).forward;
+    if (back.empty() || (!stored.empty() && !(parameters.return_tolerance > 0)))
+      return stored.empty() ? nullptr : &stored;
     Plane<glm::vec2>& made = future ? memory[i].forward : memory[i].backward;
+    if (made.empty() && !stored.empty())
+      made = trusted_vectors(bare(i), stored, bare(to), back, test, parameters.return_tolerance, workers);
     if (made.empty()) made = opposite_vectors(bare(i), bare(to), back, test, kRoundTrip, workers);
     return &made;
   }
@@ -72,22 +76,19 @@ void make_light(const SubjectFrames& frames, std::size_t i, const GatherParamete
   pilot.filter = SampleFilter::none;
   pilot.cells = std::min(parameters.cells, 2);
   const std::size_t begin = back(i, 1, frames.first), end = ahead(i, 1, frames.last);
-  const Accumulated picture =
-      gather(frames.sources(begin, end), i - begin, pilot, frames.test, {}, frames.workers);
+  const Accumulated picture = gather(frames.sources(begin, end), i - begin, pilot, frames.test, {}, frames.workers);
   frames.memory[i].light =
       local_light(picture.history.color, frames.present(i), frames.test, parameters.gain_window, frames.workers);
 }
 
 }  // namespace
 
-int gather_reach(const GatherParameters& parameters) { return parameters.reach + (parameters.gain ? 1 : 0); }
-
 Accumulated gather_frame(const FrameWindow& window, std::size_t subject, std::size_t index, std::size_t first,
                          std::size_t last, const GatherParameters& parameters, GatherMemory& memory,
                          const DiagnosticsWanted& wanted, Workers& workers) {
   std::erase_if(memory, [&](const auto& entry) { return entry.first < first || entry.first > last; });
-  const SubjectFrames frames{window,  subject, first, last, memory, surface_test(window[index].presents[subject]),
-                             workers};
+  const SubjectFrames frames{
+      window, subject, first, last, parameters, memory, surface_test(window[index].presents[subject]), workers};
   const std::size_t begin = back(index, parameters.reach, first), end = ahead(index, parameters.reach, last);
   if (parameters.gain)
     for (std::size_t i = begin; i <= end; ++i) make_light(frames, i, parameters);

@@ -12,7 +12,7 @@ namespace varve {
 
 /// Of one subject in one frame.
 struct GatherFrame {
-  Plane<glm::vec2> backward, forward;  ///< made from the neighbor's; empty where the file has them
+  Plane<glm::vec2> backward, forward;  ///< made from the neighbor's or checked against them; empty: as in the file
   Plane<float> light;                  ///< local_light() of the pilot; empty until it is needed
 };
 
@@ -24,8 +24,5 @@ using GatherMemory = std::map<std::size_t, GatherFrame>;
 Accumulated gather_frame(const FrameWindow& window, std::size_t subject, std::size_t index, std::size_t first,
                          std::size_t last, const GatherParameters& parameters, GatherMemory& memory,
                          const DiagnosticsWanted& wanted, Workers& workers);
-
-/// Frames that the result of one frame is made from, on each side.
-int gather_reach(const GatherParameters& parameters);
 
 }  // namespace varve

@@ -32,13 +32,19 @@ bool is_complete(const std::string& path, const std::string& hash, const std::st
   }
 }
 
+/// First and last frame number that a frame reaches.
+std::pair<long long, long long> limits_of(int frame, const FrameReach& reach) {
+  const long long start = block_start(frame, reach.block);
+  return {start - reach.before, start + reach.block - 1 + reach.after};
+}
+
 /// All frames to look at: those on disk within reach of the first and of the last requested.
 std::vector<ScheduledFrame> frames_between(const ResolveJob& job, const SequenceInfo& info, const FrameReach& reach) {
   const std::set<int> requested(info.frames.begin(), info.frames.end());
   std::set<int> all = requested;
   if (job.input.color.has_frame()) {
-    const long long first = static_cast<long long>(info.frames.front()) - reach.before;
-    const long long last = static_cast<long long>(info.frames.back()) + reach.after;
+    const long long first = limits_of(info.frames.front(), reach).first;
+    const long long last = limits_of(info.frames.back(), reach).second;
     for (const int frame : job.input.color.frames_on_disk())
       if (frame >= first && frame <= last) all.insert(frame);
   }
@@ -109,19 +115,26 @@ std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const Sequenc
 
 FrameReach reach_of(const ResolveJob& job) {
   if (job.parameters.accumulator == Accumulator::recursive) return {job.preroll, 0, true};
-  const int reach = gather_reach(job.parameters.gather);
-  return {reach, reach, false};
+  if (job.parameters.accumulator == Accumulator::gather) {
+    const int reach = gather_reach(job.parameters.gather);
+    return {reach, reach, false};
+  }
+  const int look_ahead = look_ahead_frames(job.parameters.two_sided, job.parameters.recursive.alpha);
+  return {look_ahead, look_ahead, false, look_ahead};
+}
+
+int block_start(int frame, int block) {
+  const int past_start = frame % block;  // negative for frames below 0
+  return frame - past_start - (past_start < 0 ? block : 0);
 }
 
 std::pair<std::size_t, std::size_t> span_around(const std::vector<ScheduledFrame>& schedule, std::size_t index,
                                                 const FrameReach& reach) {
   std::size_t first = index, last = index;
-  while (!schedule[first].restart && first > 0 &&
-         (reach.back_to_restart || schedule[index].frame - schedule[first - 1].frame <= reach.before))
+  const auto [earliest, latest] = limits_of(schedule[index].frame, reach);
+  while (!schedule[first].restart && first > 0 && (reach.back_to_restart || schedule[first - 1].frame >= earliest))
     --first;
-  while (last + 1 < schedule.size() && !schedule[last + 1].restart &&
-         schedule[last + 1].frame - schedule[index].frame <= reach.after)
-    ++last;
+  while (last + 1 < schedule.size() && !schedule[last + 1].restart && schedule[last + 1].frame <= latest) ++last;
   return {first, last};
 }
 

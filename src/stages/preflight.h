@@ -14,8 +14,12 @@ namespace varve {
 struct FrameReach {
   int before = 0, after = 0;     ///< frames, not across restarts
   bool back_to_restart = false;  ///< recursion: on and on, as far back as there is history
+  int block = 1;                 ///< frames of a block: the reach counts from its first and its last frame
 };
 FrameReach reach_of(const ResolveJob& job);
+
+/// First frame number of the block that a frame lies in; blocks are aligned to frame 0.
+int block_start(int frame, int block);
 
 /// A frame to process: written, or only read to warm the history up.
 struct ScheduledFrame {

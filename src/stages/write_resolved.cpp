@@ -211,6 +211,14 @@ Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubje
   if (aov.name == "prediction") fill([&](int x, int y) { return resolved.prediction->color.row(y)[x][component]; });
   if (aov.name == "count")
     fill([&](int x, int y) { return a.history.total.row(y)[x] > 0 ? 1.0f / a.history.spread.row(y)[x] : 0.0f; });
+  if (aov.name == "count-past") fill(of(a.diagnostics.count_past));
+  if (aov.name == "count-future") fill(of(a.diagnostics.count_future));
+  if (aov.name == "variance") fill(of(a.diagnostics.variance));
+  if (aov.name == "frames") fill(of(a.diagnostics.frames));
+  if (aov.name == "surfaces") fill(of(a.diagnostics.surfaces));
+  if (aov.name == "gain") fill(of(a.diagnostics.gain));
+  if (aov.name == "round-trip") fill(of(a.diagnostics.round_trip));
+  if (aov.name == "reject-future") fill(of(a.diagnostics.reject_future));
   if (aov.name == "motion")
     fill([&](int x, int y) {
       const float v = present.motion.empty() ? 0.0f : present.motion.row(y)[x][component];
@@ -224,7 +232,9 @@ DiagnosticsWanted diagnostics_wanted(const std::vector<const Aov*>& aovs) {
   for (const Aov* aov : aovs) {
     if (aov->name == "clip") wanted.clip = true;
     if (aov->name == "weight") wanted.weight = true;
-    if (aov->name == "reject") wanted.reject = true;
+    if (aov->name == "reject" || aov->name == "reject-future") wanted.reject = true;
+    if (aov->name == "count-past" || aov->name == "count-future") wanted.counts = true;
+    if (aov->filled_by == kByGather) wanted.gather = true;
   }
   return wanted;
 }

@@ -219,9 +219,14 @@ Color present_at(const Present& present, SampleFilter filter, std::optional<glm:
 
 }  // namespace
 
-Pixel accumulate_pixel(const Present& present, const History& previous, const RecursiveParameters& p,
-                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
-                       int y) {
+Color weighed_present(const Present& present, SampleFilter filter, std::optional<glm::dvec2> jitter, int x, int y,
+                      double& weight) {
+  return present_at(present, filter, jitter, x, y, weight);
+}
+
+Pixel rectified_history(const Present& present, const History& previous, const RecursiveParameters& p,
+                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
+                        int y, Color& fetched) {
   Pixel out;
   double w = 1;
   const Color now = present_at(present, p.sample_filter, jitter, x, y, w);
@@ -231,15 +236,30 @@ Pixel accumulate_pixel(const Present& present, const History& previous, const Re
   else
     past = fetch(previous, present, p, x, y);
   out.reject = past.reject | (present.valid.at(x, y) > 0 ? 0u : unsigned(kRejectPresent));
+  fetched = past.color;
+  if (past.total <= 0) return out;
+  if (rectify.box != Box::none)
+    if (const auto box = box_of(present, rectify, x, y)) out.clip = rectify_color(past.color, now, *box, rectify);
+  out.color = past.color;
+  out.total = past.total;
+  out.spread = past.spread;
+  return out;
+}
+
+Pixel accumulate_pixel(const Present& present, const History& previous, const RecursiveParameters& p,
+                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
+                       int y) {
+  Color fetched;
+  const Pixel past = rectified_history(present, previous, p, rectify, jitter, restart_bit, x, y, fetched);
+  double w = 1;
+  const Color now = present_at(present, p.sample_filter, jitter, x, y, w);
+  Pixel out = past;
   if (past.total <= 0) {
     out.color = now;
     out.total = w;
     out.spread = present.valid.at(x, y) > 0 ? 1 : 0;
     return out;
   }
-  if (rectify.box != Box::none)
-    if (const auto box = box_of(present, rectify, x, y)) out.clip = rectify_color(past.color, now, *box, rectify);
-
   const double steady = p.alpha * w / (1 - p.alpha + p.alpha * w);
   const double a = w > 0 ? (p.alpha_rule == AlphaRule::fixed ? steady : std::max(steady, w / (past.total + w))) : 0;
   for (std::size_t k = 0; k < 4; ++k) out.color[k] = (1 - a) * past.color[k] + a * now[k];

@@ -24,6 +24,15 @@ Pixel accumulate_pixel(const Present& present, const History& previous, const Re
                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
                        int y);
 
+/// The history at (x, y) before the present is blended in: rectified; `fetched` is what it was before that.
+Pixel rectified_history(const Present& present, const History& previous, const RecursiveParameters& recursive,
+                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
+                        int y, Color& fetched);
+
+/// The present at a pixel centre and the weight of its sample, 0 where it is not valid.
+Color weighed_present(const Present& present, SampleFilter filter, std::optional<glm::dvec2> jitter, int x, int y,
+                      double& weight);
+
 /// What predict() must give; total 0 where there is no history.
 Pixel predict_pixel(const Present& present, const History& previous, const RecursiveParameters& recursive,
                     const RectifyParameters& rectify, int x, int y);
