@@ -35,14 +35,22 @@ class AffineFit {
   /// At an offset of its own.
   Wide value(glm::dvec2 at) const {
     const double mx = x_ / w_, my = y_ / w_;
+    const Slope g = slope();
+    return first_ + v_ / w_ + g.x * (at.x - mx) + g.y * (at.y - my);
+  }
+  /// Change of the value per pixel to the right and down.
+  struct Slope {
+    Wide x, y;
+  };
+  Slope slope() const {
+    const double mx = x_ / w_, my = y_ / w_;
     const Wide mean = v_ / w_;
     double sxx = xx_ / w_ - mx * mx, sxy = xy_ / w_ - mx * my, syy = yy_ / w_ - my * my;
     const double ridge = 1e-3 * (sxx + syy) + 1e-6;
     sxx += ridge, syy += ridge;
     const Wide cx = vx_ / w_ - mx * mean, cy = vy_ / w_ - my * mean;
     const double det = sxx * syy - sxy * sxy;
-    const Wide gx = (cx * syy - cy * sxy) / det, gy = (cy * sxx - cx * sxy) / det;
-    return first_ + mean + gx * (at.x - mx) + gy * (at.y - my);
+    return {(cx * syy - cy * sxy) / det, (cy * sxx - cx * sxy) / det};
   }
 
  private:

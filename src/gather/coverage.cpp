@@ -11,6 +11,7 @@ struct Track {
   glm::dvec2 displacement{0};  // from that frame to the resolved one, pixels
   float depth = 0;             // there
   double distance = 1e300;     // of the arrival it was taken from, squared; 1e300: not seen
+  double weight = 1;           // how much its samples say
   bool known() const { return distance < 1e299; }
 };
 
@@ -20,6 +21,19 @@ Track track_of(const PixelContext& c, const Arrival& a, double distance) {
   const int x = w.x0 + int(a.pixel & 0xFFFF), y = w.y0 + int(a.pixel >> 16);
   const glm::dvec2 to(double(a.x) + c.arrivals->tile.x0, double(a.y) + c.arrivals->tile.y0);
   return {to - source.position(x, y), source.present->depth.at(x, y), distance};
+}
+
+constexpr double kStrain = 0.15;
+
+/// A surface that is stretched or turned away on its way here has another outline there: the rim of a ball that spins
+/// is not made of the same points in any two frames. Strain is that of Green and Lagrange, 0 for shifts and rotations
+/// of the picture.
+double outline_weight(const AffineFit<glm::dvec3>& motion) {
+  const auto [gx, gy] = motion.slope();
+  // Where a sample came from is here minus its displacement; so the picture's map there has the slope of minus that.
+  const double a = gx.x, b = gy.x, c = gx.y, d = gy.y;
+  const double xx = -a + 0.5 * (a * a + c * c), yy = -d + 0.5 * (b * b + d * d), xy = 0.5 * (-b - c + a * b + c * d);
+  return 1 / (1 + (xx * xx + yy * yy + 2 * xy * xy) / (kStrain * kStrain));
 }
 
 /// Frames that do not show it: along a straight line between, and beyond, those that do.
@@ -45,6 +59,7 @@ void fill_gaps(std::vector<Track>& tracks) {
     const Track& p = tracks[std::size_t(a >= 0 && a < n ? a : b)];
     t.displacement = p.displacement;
     t.depth = p.depth;
+    t.weight = p.weight;
     if (two) {
       const Track& q = tracks[std::size_t(b)];
       const double f = double(i - a) / (b - a);
@@ -70,16 +85,19 @@ void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arr
   // Frames whose samples miss it here: as it moves elsewhere in the tile.
   for (const TileSurface& s : c.arrivals->surfaces) {
     if (!belongs(s.id, s.near, s.far, *arrivals.front(), c.test)) continue;
-    for (std::size_t f = 0; f < frames; ++f)
-      if (!tracks[f].known() && s.motion[f].count() > 0) {
+    for (std::size_t f = 0; f < frames; ++f) {
+      if (s.motion[f].count() == 0) continue;
+      if (!tracks[f].known()) {
         const glm::dvec3 v = s.motion[f].value(glm::dvec2(mx, my) - glm::dvec2(kTile / 2));
         tracks[f] = {glm::dvec2(v), float(v.z), 0};
       }
+      tracks[f].weight = outline_weight(s.motion[f]);
+    }
     break;
   }
   fill_gaps(tracks);
 
-  scratch.px.clear(), scratch.py.clear(), scratch.is_hit.clear();
+  scratch.px.clear(), scratch.py.clear(), scratch.pw.clear(), scratch.is_hit.clear();
   const double reach = double(c.arrivals->around) / kBinsPerPixel;  // beyond the pixel's edge
   for (std::size_t f = 0; f < frames; ++f) {
     const GatherSource& source = c.sources[f];
@@ -100,6 +118,7 @@ void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arr
         scratch.px.push_back(float(u + shift.x - x - 0.5));
         scratch.py.push_back(float(v + shift.y - y - 0.5));
         scratch.is_hit.push_back(hit);
+        scratch.pw.push_back(float(t.weight));
       }
   }
   const std::size_t area = std::size_t(c.axis.count) * std::size_t(c.axis.count);
@@ -112,7 +131,7 @@ void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arr
   const std::size_t size = (scratch.px.size() + kCellLanes - 1) / kCellLanes * kCellLanes,
                     cells = std::size_t(c.axis.count);
   scratch.is_hit.resize(size, 2);
-  scratch.px.resize(size, 0), scratch.py.resize(size, 0);
+  scratch.px.resize(size, 0), scratch.py.resize(size, 0), scratch.pw.resize(size, 0);
   scratch.cx.resize(size * cells), scratch.cy.resize(size * cells);
   const float scale = float(0.5 / (c.sigma * c.sigma));
   const auto stride = std::ptrdiff_t(size);
@@ -122,7 +141,7 @@ void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arr
     scratch.masked.resize(size * cells);
     for (std::size_t j = 0; j < cells; ++j)
       for (std::size_t i = 0; i < size; ++i)
-        scratch.masked[j * size + i] = scratch.is_hit[i] == wanted ? scratch.cy[j * size + i] : 0;
+        scratch.masked[j * size + i] = scratch.is_hit[i] == wanted ? scratch.cy[j * size + i] * scratch.pw[i] : 0;
     c.kernel->cell_sums(scratch.cx.data(), scratch.masked.data(), stride, int(size), c.axis.count,
                         wanted == 1 ? scratch.hits.data() : scratch.misses.data());
   }

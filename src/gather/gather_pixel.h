@@ -38,7 +38,7 @@ struct PixelScratch {
   std::vector<std::uint8_t> surface;
   std::vector<float> x, y, weight, wx, wy, result;
   std::vector<float> sums, share;
-  std::vector<float> px, py, cx, cy, masked, hits, misses;  // of the coverage
+  std::vector<float> px, py, pw, cx, cy, masked, hits, misses;  // of the coverage
   std::vector<std::uint8_t> is_hit;
   std::vector<double> through;
 };

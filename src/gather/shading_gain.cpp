@@ -6,6 +6,9 @@
 namespace varve {
 namespace {
 
+constexpr double kHighlight = 1.35;      // ratio that aliasing of a first picture does not reach
+constexpr double kHighlightWidth = 0.1;  // beyond it, as a logarithm, where a sample counts half
+
 double luminance(const glm::vec4& c) { return 0.2126 * double(c.r) + 0.7152 * double(c.g) + 0.0722 * double(c.b); }
 
 /// Sum of luminance and number of pixels.
@@ -24,14 +27,14 @@ bool is_pure(const Present& p, int x, int y, const SurfaceTest& test) {
 }
 
 /// Light around the place where a sample arrives: of its pixel, or of the nearest neighbor that shows the same surface.
-float light_at(const GatherSource& target, glm::dvec2 at, SurfaceKey key, const SurfaceTest& test) {
+float light_at(const GatherSource& target, const Plane<float>& light_plane, glm::dvec2 at, SurfaceKey key, const SurfaceTest& test) {
   const Window& w = target.window();
   const int cx = int(std::floor(at.x)), cy = int(std::floor(at.y));
   float light = 0;
   double nearest = 1e300;
   const auto look = [&](int x, int y) {
     if (!w.contains(x, y) || !test.same(surface_at(*target.present, x, y), key)) return;
-    const float here = target.local_light->at(x, y);
+    const float here = light_plane.at(x, y);
     const double dx = x + 0.5 - at.x, dy = y + 0.5 - at.y, distance = dx * dx + dy * dy;
     if (here > 0 && distance < nearest) light = here, nearest = distance;
   };
@@ -81,16 +84,28 @@ Plane<float> local_light(const Plane<glm::vec4>& color, const Present& present, 
 
 ShadingGain shading_gain(const GatherSource& source, int x, int y, const GatherSource& target, glm::dvec2 at,
                          SurfaceKey key, const SurfaceTest& test, double dead_zone, double half_weight) {
+  ShadingGain result;
   const float there = source.local_light->at(x, y);
-  if (!(there > 0)) return {};
-  const float here = light_at(target, at, key, test);
-  if (!(here > 0)) return {};
-  const double ratio = double(here) / double(there), change = ratio - 1;
-  if (!(std::fabs(change) > dead_zone)) return {};
-  const double trusted = dead_zone / change;
-  const double gain = 1 + change * (1 - trusted * trusted);
-  const double off = std::log(gain) / half_weight;
-  return {float(gain), float(1 / (1 + off * off))};
+  if (there > 0) {
+    const float here = light_at(target, *target.local_light, at, key, test);
+    const double change = here > 0 ? double(here) / double(there) - 1 : 0;
+    if (std::fabs(change) > dead_zone) {
+      const double trusted = dead_zone / change;
+      const double gain = 1 + change * (1 - trusted * trusted);
+      const double off = std::log(gain) / half_weight;
+      result = {float(gain), float(1 / (1 + off * off))};
+    }
+  }
+  if (!source.near_light || !target.near_light) return result;
+  const float near_there = source.near_light->at(x, y);
+  if (!(near_there > 0)) return result;
+  const float near_here = light_at(target, *target.near_light, at, key, test);
+  if (!(near_here > 0)) return result;
+  const double ratio = double(near_here) / (double(near_there) * double(result.gain));
+  if (ratio < kHighlight && ratio * kHighlight > 1) return result;
+  const double off = (std::fabs(std::log(ratio)) - std::log(kHighlight)) / kHighlightWidth;
+  result.weight *= float(1 / (1 + off * off));
+  return result;
 }
 
 }  // namespace varve

@@ -22,6 +22,8 @@ struct ShadingGain {
 /// Of the sample of pixel (x, y) of `source`, which arrives at `at` (pixels) in `target` on surface `key`.
 /// Changes below `dead_zone` count as noise and are shrunk away; at a change of `half_weight` (logarithm) the sample
 /// counts half. 1 and 1 where either side has no light to compare.
+/// Where the light of a few pixels has changed far more than aliasing can make it, as a highlight does that slides over
+/// its surface, the sample counts less still: its light cannot be followed, so the window shrinks.
 ShadingGain shading_gain(const GatherSource& source, int x, int y, const GatherSource& target, glm::dvec2 at,
                          SurfaceKey key, const SurfaceTest& test, double dead_zone, double half_weight);
 

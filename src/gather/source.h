@@ -19,6 +19,7 @@ struct GatherSource {
   glm::dvec2 jitter{0};                        ///< sample position minus pixel centre, pixels
   const Plane<glm::vec2>* backward = nullptr;  ///< to the frame before; null: at rest
   const Plane<glm::vec2>* forward = nullptr;   ///< to the frame after; null: at rest
+  const Plane<float>* near_light = nullptr;   ///< the same over a few pixels; null: no test of it
   const Plane<float>* local_light = nullptr;   ///< mean luminance around each pixel on its surface; null: no gain
 
   const Window& window() const { return present->color.window(); }

@@ -9,6 +9,7 @@
 namespace varve {
 namespace {
 
+constexpr int kNearWindow = 5;        // pixels, odd
 constexpr double kRoundTrip = 0.05;  // px: an inverted vector that misses its sample by more is none
 
 /// The frames of one subject, with what is made for them.
@@ -50,7 +51,7 @@ struct SubjectFrames {
     if (i > first) s.backward = vectors(i, i - 1);
     if (i < last) s.forward = vectors(i, i + 1);
     const auto made = memory.find(i);
-    if (made != memory.end() && !made->second.light.empty()) s.local_light = &made->second.light;
+    if (made != memory.end() && !made->second.light.empty()) s.local_light = &made->second.light, s.near_light = &made->second.near_light;
     return s;
   }
 
@@ -79,6 +80,8 @@ void make_light(const SubjectFrames& frames, std::size_t i, const GatherParamete
   const Accumulated picture = gather(frames.sources(begin, end), i - begin, pilot, frames.test, {}, frames.workers);
   frames.memory[i].light =
       local_light(picture.history.color, frames.present(i), frames.test, parameters.gain_window, frames.workers);
+  frames.memory[i].near_light =
+      local_light(picture.history.color, frames.present(i), frames.test, kNearWindow, frames.workers);
 }
 
 }  // namespace
