@@ -17,7 +17,7 @@ class AffineFit {
     // Shifted by the first value, so that nothing cancels.
     if (count_++ == 0) first_ = value;
     const Wide v = value - first_;
-    v_ += weight * v, vx_ += weight * d.x * v, vy_ += weight * d.y * v;
+    vv_ += weight * (v * v), v_ += weight * v, vx_ += weight * d.x * v, vy_ += weight * d.y * v;
   }
   int count() const { return count_; }
   double weight() const { return w_; }
@@ -29,6 +29,14 @@ class AffineFit {
     // The smaller spread is about det / sum; the last is the distance of the origin, squared, in units of the spread.
     return count_ >= 5 && det > kFirmSpread * sum &&
            mx * mx * syy - 2 * mx * my * sxy + my * my * sxx < kFirmReach * det;
+  }
+  /// Weighted mean square of what the plane leaves over, x and y together.
+  double misfit() const {
+    const double mx = x_ / w_, my = y_ / w_;
+    const Wide mean = v_ / w_, cx = vx_ / w_ - mx * mean, cy = vy_ / w_ - my * mean;
+    const Slope g = slope();
+    const Wide left = vv_ / w_ - mean * mean - g.x * cx - g.y * cy;
+    return left.x + left.y;
   }
   /// At the origin of the offsets.
   Wide value() const { return value({0, 0}); }
@@ -58,7 +66,7 @@ class AffineFit {
   static constexpr double kFirmReach = 4;
 
   double w_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0;
-  Wide first_{0}, v_{0}, vx_{0}, vy_{0};
+  Wide first_{0}, v_{0}, vv_{0}, vx_{0}, vy_{0};
   int count_ = 0;
 };
 

@@ -8,7 +8,8 @@
 namespace varve {
 namespace {
 
-constexpr int kWidest = 32;  // samples on each side
+constexpr int kWidest = 32;      // samples on each side
+constexpr double kMisfit = 0.1;  // px: a field that is no plane cannot be followed there
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
 
 template <class V>
@@ -59,7 +60,8 @@ typename Value<V>::Wide read_field(const Plane<V>& field, const GatherSource& so
         fit.add(d, 1 / (0.25 + d.x * d.x + d.y * d.y), Wide(v));
       }
     // On a line the slope across it is unknown; a wider window may have another line of the same surface.
-    if (fit.count() > 0 && (reach == kWidest || fit.is_firm())) return fit.value();
+    if (fit.count() > 0 && (reach == kWidest || fit.is_firm()))
+      return fit.misfit() < kMisfit * kMisfit ? fit.value() : Wide(kNowhere);
   }
   return Wide(kNowhere);
 }

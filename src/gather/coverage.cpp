@@ -24,6 +24,7 @@ Track track_of(const PixelContext& c, const Arrival& a, double distance) {
 }
 
 constexpr double kStrain = 0.15;
+constexpr double kBend = 0.15;  // px
 
 /// A surface that is stretched or turned away on its way here has another outline there: the rim of a ball that spins
 /// is not made of the same points in any two frames. Strain is that of Green and Lagrange, 0 for shifts and rotations
@@ -33,7 +34,9 @@ double outline_weight(const AffineFit<glm::dvec3>& motion) {
   // Where a sample came from is here minus its displacement; so the picture's map there has the slope of minus that.
   const double a = gx.x, b = gy.x, c = gx.y, d = gy.y;
   const double xx = -a + 0.5 * (a * a + c * c), yy = -d + 0.5 * (b * b + d * d), xy = 0.5 * (-b - c + a * b + c * d);
-  return 1 / (1 + (xx * xx + yy * yy + 2 * xy * xy) / (kStrain * kStrain));
+  const double strain = (xx * xx + yy * yy + 2 * xy * xy) / (kStrain * kStrain),
+               bend = motion.misfit() / (kBend * kBend);
+  return 1 / (1 + strain + bend);
 }
 
 /// Frames that do not show it: along a straight line between, and beyond, those that do.

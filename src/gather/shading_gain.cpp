@@ -6,7 +6,7 @@
 namespace varve {
 namespace {
 
-constexpr double kHighlight = 1.35;      // ratio that aliasing of a first picture does not reach
+constexpr double kHighlight = 1.35;      // ratio that noise of a first picture does not reach
 constexpr double kHighlightWidth = 0.1;  // beyond it, as a logarithm, where a sample counts half
 
 double luminance(const glm::vec4& c) { return 0.2126 * double(c.r) + 0.7152 * double(c.g) + 0.0722 * double(c.b); }
@@ -27,7 +27,8 @@ bool is_pure(const Present& p, int x, int y, const SurfaceTest& test) {
 }
 
 /// Light around the place where a sample arrives: of its pixel, or of the nearest neighbor that shows the same surface.
-float light_at(const GatherSource& target, const Plane<float>& light_plane, glm::dvec2 at, SurfaceKey key, const SurfaceTest& test) {
+float light_at(const GatherSource& target, const Plane<float>& light_plane, glm::dvec2 at, SurfaceKey key,
+               const SurfaceTest& test) {
   const Window& w = target.window();
   const int cx = int(std::floor(at.x)), cy = int(std::floor(at.y));
   float light = 0;
@@ -46,6 +47,26 @@ float light_at(const GatherSource& target, const Plane<float>& light_plane, glm:
 }
 
 }  // namespace
+
+Plane<LightRange> local_range(const Plane<glm::vec4>& color, const Present& present, const SurfaceTest& test,
+                              Workers& workers) {
+  const Window& w = present.color.window();
+  Plane<LightRange> range(w);
+  workers.for_rows(w.y0, w.y1, [&](int y) {
+    for (int x = w.x0; x < w.x1; ++x) {
+      LightRange& r = range.at(x, y);
+      r = {std::numeric_limits<float>::quiet_NaN(), 0, 0};
+      if (!is_pure(present, x, y, test)) continue;
+      r.own = r.low = r.high = float(luminance(color.at(x, y)));
+      for (int j = std::max(y - 1, w.y0); j <= std::min(y + 1, w.y1 - 1); ++j)
+        for (int i = std::max(x - 1, w.x0); i <= std::min(x + 1, w.x1 - 1); ++i) {
+          const float light = float(luminance(color.at(i, j)));
+          r.low = std::min(r.low, light), r.high = std::max(r.high, light);
+        }
+    }
+  });
+  return range;
+}
 
 Plane<float> local_light(const Plane<glm::vec4>& color, const Present& present, const SurfaceTest& test, int edge,
                          Workers& workers) {
@@ -96,14 +117,16 @@ ShadingGain shading_gain(const GatherSource& source, int x, int y, const GatherS
       result = {float(gain), float(1 / (1 + off * off))};
     }
   }
-  if (!source.near_light || !target.near_light) return result;
-  const float near_there = source.near_light->at(x, y);
-  if (!(near_there > 0)) return result;
-  const float near_here = light_at(target, *target.near_light, at, key, test);
-  if (!(near_here > 0)) return result;
-  const double ratio = double(near_here) / (double(near_there) * double(result.gain));
-  if (ratio < kHighlight && ratio * kHighlight > 1) return result;
-  const double off = (std::fabs(std::log(ratio)) - std::log(kHighlight)) / kHighlightWidth;
+  if (!source.light_range || !target.light_range) return result;
+  const int tx = int(std::floor(at.x)), ty = int(std::floor(at.y));
+  if (!target.window().contains(tx, ty)) return result;
+  const LightRange& here = target.light_range->at(tx, ty);
+  const double own = double(source.light_range->at(x, y).own) * double(result.gain);
+  if (!(here.own == here.own) || !test.same(surface_at(*target.present, tx, ty), key)) return result;
+  const double over = own / double(here.high), under = double(here.low) / own;
+  const double beyond = std::max(over, under);
+  if (!(beyond > kHighlight) || !(beyond < 1e30)) return result;
+  const double off = std::log(beyond / kHighlight) / kHighlightWidth;
   result.weight *= float(1 / (1 + off * off));
   return result;
 }

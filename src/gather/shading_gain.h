@@ -14,6 +14,10 @@ namespace varve {
 Plane<float> local_light(const Plane<glm::vec4>& color, const Present& present, const SurfaceTest& test, int edge,
                          Workers& workers);
 
+/// Luminance of `color` and its range over 3x3 pixels.
+Plane<LightRange> local_range(const Plane<glm::vec4>& color, const Present& present, const SurfaceTest& test,
+                              Workers& workers);
+
 struct ShadingGain {
   float gain = 1;    ///< to multiply the sample with
   float weight = 1;  ///< how much it counts: the more the light has changed, the less
@@ -22,8 +26,9 @@ struct ShadingGain {
 /// Of the sample of pixel (x, y) of `source`, which arrives at `at` (pixels) in `target` on surface `key`.
 /// Changes below `dead_zone` count as noise and are shrunk away; at a change of `half_weight` (logarithm) the sample
 /// counts half. 1 and 1 where either side has no light to compare.
-/// Where the light of a few pixels has changed far more than aliasing can make it, as a highlight does that slides over
-/// its surface, the sample counts less still: its light cannot be followed, so the window shrinks.
+/// Where the picture of the other frame, brought to this light, falls far outside of what the pixels around show here,
+/// as a highlight does that slides over its surface, the sample counts less still: its light cannot be followed, so the
+/// window shrinks.
 ShadingGain shading_gain(const GatherSource& source, int x, int y, const GatherSource& target, glm::dvec2 at,
                          SurfaceKey key, const SurfaceTest& test, double dead_zone, double half_weight);
 

@@ -12,15 +12,20 @@
 
 namespace varve {
 
+/// Luminance of a pixel, and the least and greatest of its 3x3 neighbors; own is NaN where several surfaces meet.
+struct LightRange {
+  float own, low, high;
+};
+
 /// A frame of the window. `backward` and `forward` are undilated; either is NaN where nothing is known. All planes have
 /// the window of present->color.
 struct GatherSource {
   const Present* present = nullptr;
-  glm::dvec2 jitter{0};                        ///< sample position minus pixel centre, pixels
-  const Plane<glm::vec2>* backward = nullptr;  ///< to the frame before; null: at rest
-  const Plane<glm::vec2>* forward = nullptr;   ///< to the frame after; null: at rest
-  const Plane<float>* near_light = nullptr;   ///< the same over a few pixels; null: no test of it
-  const Plane<float>* local_light = nullptr;   ///< mean luminance around each pixel on its surface; null: no gain
+  glm::dvec2 jitter{0};                            ///< sample position minus pixel centre, pixels
+  const Plane<glm::vec2>* backward = nullptr;      ///< to the frame before; null: at rest
+  const Plane<glm::vec2>* forward = nullptr;       ///< to the frame after; null: at rest
+  const Plane<LightRange>* light_range = nullptr;  ///< local_range(); null: no test of it
+  const Plane<float>* local_light = nullptr;       ///< mean luminance around each pixel on its surface; null: no gain
 
   const Window& window() const { return present->color.window(); }
   /// Position of the sample of pixel (x, y).

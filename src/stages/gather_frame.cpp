@@ -9,7 +9,6 @@
 namespace varve {
 namespace {
 
-constexpr int kNearWindow = 5;        // pixels, odd
 constexpr double kRoundTrip = 0.05;  // px: an inverted vector that misses its sample by more is none
 
 /// The frames of one subject, with what is made for them.
@@ -51,7 +50,8 @@ struct SubjectFrames {
     if (i > first) s.backward = vectors(i, i - 1);
     if (i < last) s.forward = vectors(i, i + 1);
     const auto made = memory.find(i);
-    if (made != memory.end() && !made->second.light.empty()) s.local_light = &made->second.light, s.near_light = &made->second.near_light;
+    if (made != memory.end() && !made->second.light.empty())
+      s.local_light = &made->second.light, s.light_range = &made->second.range;
     return s;
   }
 
@@ -80,8 +80,7 @@ void make_light(const SubjectFrames& frames, std::size_t i, const GatherParamete
   const Accumulated picture = gather(frames.sources(begin, end), i - begin, pilot, frames.test, {}, frames.workers);
   frames.memory[i].light =
       local_light(picture.history.color, frames.present(i), frames.test, parameters.gain_window, frames.workers);
-  frames.memory[i].near_light =
-      local_light(picture.history.color, frames.present(i), frames.test, kNearWindow, frames.workers);
+  frames.memory[i].range = local_range(picture.history.color, frames.present(i), frames.test, frames.workers);
 }
 
 }  // namespace

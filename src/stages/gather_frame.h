@@ -13,7 +13,8 @@ namespace varve {
 /// Of one subject in one frame.
 struct GatherFrame {
   Plane<glm::vec2> backward, forward;  ///< made from the neighbor's or checked against them; empty: as in the file
-  Plane<float> light, near_light;      ///< local_light() of the pilot, wide and narrow; empty until they are needed
+  Plane<float> light;                  ///< local_light() of the pilot; empty until it is needed
+  Plane<LightRange> range;             ///< local_range() of it
 };
 
 /// By place in the schedule; frames that are passed are forgotten.
