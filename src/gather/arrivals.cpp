@@ -144,19 +144,21 @@ void collect_arrivals(const TileGrid& grid, int column, int row, std::span<const
         for (int x = x0; x < x1; ++x) {
           const float ax = float(x + double(field[x].x) + ox), ay = float(y + double(field[x].y) + oy);
           if (!(ax >= low && ay >= low && ax < high && ay < high && valid[x] > 0)) continue;
-          Arrival a{ax,
-                    ay,
-                    field[x].z,
-                    1,
-                    1,
-                    source.present->id.empty() ? 0 : source.present->id.at(x, y),
-                    std::uint32_t(y - w.y0) << 16 | std::uint32_t(x - w.x0),
-                    std::uint32_t(f)};
+          Arrival a{.x = ax,
+                    .y = ay,
+                    .depth = field[x].z,
+                    .gain = 1,
+                    .weight = 1,
+                    .light = float(luminance(source.present->color.at(x, y))),
+                    .id = source.present->id.empty() ? 0 : source.present->id.at(x, y),
+                    .pixel = std::uint32_t(y - w.y0) << 16 | std::uint32_t(x - w.x0),
+                    .frame = std::uint32_t(f)};
           if (light.gain && f != present) {
+            const glm::dvec2 at = glm::dvec2(double(ax), double(ay)) + glm::dvec2(out.tile.x0, out.tile.y0);
             const ShadingGain g =
-                shading_gain(source, x, y, sources[present], glm::dvec2(ax, ay) + glm::dvec2(out.tile.x0, out.tile.y0),
-                             {a.id, a.depth}, test, light.dead_zone, light.weight);
+                shading_gain(source, x, y, sources[present], at, {a.id, a.depth}, test, light.dead_zone, light.weight);
             a.gain = g.gain, a.weight = g.weight;
+            a.light *= g.gain;
           }
           out.unsorted.push_back(a);
           out.bin_of.push_back(

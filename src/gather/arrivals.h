@@ -19,6 +19,7 @@ struct Arrival {
   float x, y;           ///< where, pixels from the tile's corner
   float depth;          ///< in the resolved frame
   float gain, weight;   ///< what its light is multiplied with, and how much it counts, in (0, 1]
+  float light;          ///< its luminance after the gain
   std::uint32_t id;     ///< of its object
   std::uint32_t pixel;  ///< in its own frame: y * 65536 + x, from the window's corner
   std::uint32_t frame;  ///< place in the window of frames

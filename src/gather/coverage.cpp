@@ -23,20 +23,20 @@ Track track_of(const PixelContext& c, const Arrival& a, double distance) {
   return {to - source.position(x, y), source.present->depth.at(x, y), distance};
 }
 
-constexpr double kStrain = 0.15;
+constexpr double kOutlineSpacing = 0.43;  // px
+constexpr double kShear = 0.05;
 constexpr double kBend = 0.15;  // px
 
 /// A surface that is stretched or turned away on its way here has another outline there: the rim of a ball that spins
 /// is not made of the same points in any two frames. Strain is that of Green and Lagrange, 0 for shifts and rotations
-/// of the picture.
+/// of the picture; growing alike in all directions, as in a zoom, does no harm either.
 double outline_weight(const AffineFit<glm::dvec3>& motion) {
   const auto [gx, gy] = motion.slope();
   // Where a sample came from is here minus its displacement; so the picture's map there has the slope of minus that.
   const double a = gx.x, b = gy.x, c = gx.y, d = gy.y;
   const double xx = -a + 0.5 * (a * a + c * c), yy = -d + 0.5 * (b * b + d * d), xy = 0.5 * (-b - c + a * b + c * d);
-  const double strain = (xx * xx + yy * yy + 2 * xy * xy) / (kStrain * kStrain),
-               bend = motion.misfit() / (kBend * kBend);
-  return 1 / (1 + strain + bend);
+  const double shear = ((xx - yy) * (xx - yy) / 2 + 2 * xy * xy) / (kShear * kShear), bend = motion.misfit() / (kBend * kBend);
+  return 1 / (1 + shear + bend);
 }
 
 /// Frames that do not show it: along a straight line between, and beyond, those that do.
@@ -99,6 +99,9 @@ void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arr
     break;
   }
   fill_gaps(tracks);
+  // A few samples tell no strain: trust in the outline never grows with distance.
+  for (std::size_t f = c.present + 1; f < frames; ++f) tracks[f].weight = std::min(tracks[f].weight, tracks[f - 1].weight);
+  for (std::size_t f = c.present; f-- > 0;) tracks[f].weight = std::min(tracks[f].weight, tracks[f + 1].weight);
 
   scratch.px.clear(), scratch.py.clear(), scratch.pw.clear(), scratch.is_hit.clear();
   const double reach = double(c.arrivals->around) / kBinsPerPixel;  // beyond the pixel's edge
@@ -136,7 +139,7 @@ void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arr
   scratch.is_hit.resize(size, 2);
   scratch.px.resize(size, 0), scratch.py.resize(size, 0), scratch.pw.resize(size, 0);
   scratch.cx.resize(size * cells), scratch.cy.resize(size * cells);
-  const float scale = float(0.5 / (c.sigma * c.sigma));
+  const float scale = gaussian_scale(c, scratch.pw, kOutlineSpacing);
   const auto stride = std::ptrdiff_t(size);
   c.kernel->axis_weights(scratch.px.data(), int(size), c.axis.centers, c.axis.count, scale, scratch.cx.data(), stride);
   c.kernel->axis_weights(scratch.py.data(), int(size), c.axis.centers, c.axis.count, scale, scratch.cy.data(), stride);

@@ -53,13 +53,6 @@ CellAxis cell_axis(SampleFilter filter, int per_pixel) {
   return axis;
 }
 
-/// With few frames the cells must look further for a sample. In a still picture n samples are n^-1/2 pixels apart.
-double cell_sigma(const GatherParameters& parameters, std::size_t frames) {
-  return std::max(parameters.sigma, 0.43 / std::sqrt(double(frames)));
-}
-
-double luminance(const glm::dvec4& c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; }
-
 /// Weights of one side of time.
 struct SideWeights {
   double sum = 0, squares = 0;
@@ -91,8 +84,8 @@ PixelSums sum_pixel(const PixelContext& c, const PixelWeights& pixel) {
     r.color += color * weight;
     r.all.add(weight);
     (a->frame < c.present ? r.past : a->frame > c.present ? r.future : r.present).add(weight);
-    if (r.arrivals++ == 0) shift = luminance(color);
-    const double light = luminance(color) - shift;
+    if (r.arrivals++ == 0) shift = double(a->light);
+    const double light = double(a->light) - shift;
     r.light += weight * light;
     r.light_squares += weight * light * light;
     r.trust += double(a->weight);
@@ -194,7 +187,8 @@ Accumulated gather(std::span<const GatherSource> sources, std::size_t present, c
   context.sources = sources;
   context.present = present;
   context.axis = cell_axis(parameters.filter, parameters.cells);
-  context.sigma = cell_sigma(parameters, sources.size());
+  context.sigma = parameters.sigma;
+  context.change_limit = parameters.change_limit;
   context.test = test;
   context.kernel = cell_kernel_for(isa);
   const TileGrid grid{w, context.axis.radius - 0.5 + 1.0 / kBinsPerPixel};

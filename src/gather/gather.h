@@ -16,6 +16,7 @@ struct GatherParameters {
   double sigma = 0.09;  ///< of the Gaussian around a cell's middle, pixels; widened where samples are few
   SampleFilter filter = SampleFilter::none;  ///< the filter of the output; none: a box of one pixel
   double return_tolerance = 0;   ///< px, besides a hundredth of the way: how far there and back may miss; 0: no test
+  double change_limit = 3;       ///< standard errors by which the light of other frames may differ; 0: any
   bool gain = true;              ///< follow changes of light that the vectors do not know
   int gain_window = 15;          ///< edge of the window that light is measured in, odd
   double gain_dead_zone = 0.10;  ///< relative change of light that noise alone may make

@@ -4,11 +4,13 @@
 #include <cmath>
 
 #include "gather/coverage.h"
+#include "gather/temporal_change.h"
 
 namespace varve {
 namespace {
 
 constexpr int kMaxSurfaces = 8;
+constexpr double kColorSpacing = 0.3;  // pixels
 
 /// A surface as it arrives in a pixel.
 struct Surface {
@@ -103,27 +105,48 @@ void order_by_surface(Surfaces& s, const PixelContext& c, int x, int y, PixelScr
   }
 }
 
-void axis_weights(const PixelContext& c, PixelScratch& scratch) {
+void weigh_light(const Surfaces& s, const PixelContext& c, PixelScratch& scratch) {
+  for (int k = 0; k < s.count; ++k) {
+    const Surface& surface = s.list[std::size_t(k)];
+    const auto begin = std::size_t(surface.begin);
+    turn_down_changed({scratch.ordered.data() + begin, std::size_t(surface.count)}, c.present, c.change_limit,
+                      scratch.weight.data() + begin);
+  }
+}
+
+void axis_weights(const Surface& surface, const PixelContext& c, PixelScratch& scratch) {
   const std::size_t size = scratch.ordered.size(), cells = std::size_t(c.axis.count);
-  const float scale = float(0.5 / (c.sigma * c.sigma));
-  scratch.wx.resize(size * cells);
-  scratch.wy.resize(size * cells);
-  c.kernel->axis_weights(scratch.x.data(), int(size), c.axis.centers, c.axis.count, scale, scratch.wx.data(),
-                         std::ptrdiff_t(size));
-  c.kernel->axis_weights(scratch.y.data(), int(size), c.axis.centers, c.axis.count, scale, scratch.wy.data(),
-                         std::ptrdiff_t(size));
+  const auto begin = std::size_t(surface.begin), count = std::size_t(surface.padded);
+  const auto stride = std::ptrdiff_t(size);
+  float* weight = scratch.weight.data() + begin;
+  const float scale = gaussian_scale(c, {weight, count}, kColorSpacing);
+  float *wx = scratch.wx.data() + begin, *wy = scratch.wy.data() + begin;
+  c.kernel->axis_weights(scratch.x.data() + begin, surface.padded, c.axis.centers, c.axis.count, scale, wx, stride);
+  c.kernel->axis_weights(scratch.y.data() + begin, surface.padded, c.axis.centers, c.axis.count, scale, wy, stride);
   for (std::size_t j = 0; j < cells; ++j)
-    for (std::size_t i = 0; i < size; ++i) scratch.wy[j * size + i] *= scratch.weight[i];
+    for (std::size_t i = 0; i < count; ++i) wy[j * size + i] *= weight[i];
 }
 
 }  // namespace
+
+float gaussian_scale(const PixelContext& c, std::span<const float> weights, double spacing) {
+  double sum = 0, squares = 0;
+  for (const float w : weights) sum += double(w), squares += double(w) * double(w);
+  const double edge = 2 * c.axis.radius + 2.0 / kBinsPerPixel;  // of the area that samples are taken from
+  const double per_pixel = squares > 0 ? sum * sum / squares / (edge * edge) : 0;
+  const double sigma = std::max(c.sigma, spacing / std::sqrt(std::max(per_pixel, 0.25)));
+  return float(0.5 / (sigma * sigma));
+}
 
 PixelWeights weigh_pixel(const PixelContext& c, int x, int y, PixelScratch& scratch) {
   find_arrivals(c, x, y, scratch.found);
   if (scratch.found.empty()) return {};
   Surfaces s = find_surfaces(c, scratch.found, scratch.surface);
   order_by_surface(s, c, x, y, scratch);
-  axis_weights(c, scratch);
+  weigh_light(s, c, scratch);
+  scratch.wx.resize(scratch.ordered.size() * std::size_t(c.axis.count));
+  scratch.wy.resize(scratch.wx.size());
+  for (int k = 0; k < s.count; ++k) axis_weights(s.list[std::size_t(k)], c, scratch);
 
   const int cells = c.axis.count;
   const std::size_t area = std::size_t(cells) * std::size_t(cells), size = scratch.ordered.size();

@@ -28,9 +28,15 @@ struct PixelContext {
   const TileArrivals* arrivals = nullptr;
   CellAxis axis;
   double sigma = 0.09;
+  double change_limit = 3;
   SurfaceTest test;
   const CellKernel* kernel = nullptr;
 };
+
+/// 1 / (2 sigma^2) of the cells' Gaussian. With few samples that count, cells must look further for one: n samples a
+/// pixel lie n^-1/2 pixels apart. Else the nearest would win, however little it counts.
+/// `spacing` is sigma for one sample in a pixel.
+float gaussian_scale(const PixelContext& context, std::span<const float> weights, double spacing);
 
 /// Working space of one worker; grows to what the fullest pixel needs.
 struct PixelScratch {

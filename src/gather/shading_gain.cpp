@@ -9,8 +9,6 @@ namespace {
 constexpr double kHighlight = 1.35;      // ratio that noise of a first picture does not reach
 constexpr double kHighlightWidth = 0.1;  // beyond it, as a logarithm, where a sample counts half
 
-double luminance(const glm::vec4& c) { return 0.2126 * double(c.r) + 0.7152 * double(c.g) + 0.0722 * double(c.b); }
-
 /// Sum of luminance and number of pixels.
 struct LightSum {
   double sum = 0;

@@ -7,6 +7,11 @@
 
 namespace varve {
 
+/// Of scene-linear Rec.709.
+inline double luminance(const glm::vec4& c) {
+  return 0.2126 * double(c.r) + 0.7152 * double(c.g) + 0.0722 * double(c.b);
+}
+
 /// Mean luminance of a frame around each pixel on the same surface: `edge` x `edge` pixels (odd) of its object whose
 /// own 3x3 neighbors all belong to it, so that edges do not leak in. 0 where there are none. Separable: means along
 /// rows, then of those along columns; cost does not grow with the window.

@@ -145,6 +145,10 @@ std::vector<Knob> knobs() {
        "Width of the Gaussian by which a cell weighs the samples around it. Near 0 only the nearest counts; wide ones "
        "blur. It is widened where there are few frames.",
        number([](auto& p) -> auto& { return p.gather.sigma; }, {0.01, 2})},
+      {"change-limit", "SIGMAS", around, expert,
+       "Standard errors by which the light of frames further off may differ in a pixel before they count less, as under "
+       "a highlight that slides by. 0: no test. Small values shrink the window everywhere.",
+       number([](auto& p) -> auto& { return p.gather.change_limit; }, {0, 1000})},
       {"gain", "WORD", around, advanced, "What is done about light that changes.",
        word(
            [](auto& p) -> auto& { return p.gather.gain; }, kGains)},
