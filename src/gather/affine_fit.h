@@ -21,14 +21,18 @@ class AffineFit {
   }
   int count() const { return count_; }
   double weight() const { return w_; }
-  /// True where the slope is known in every direction and the origin does not lie far off the samples.
-  bool is_firm() const {
+  /// True where the slope is known in every direction: the samples do not lie on a line.
+  bool spans_plane() const {
     const double mx = x_ / w_, my = y_ / w_;
     const double sxx = xx_ / w_ - mx * mx, sxy = xy_ / w_ - mx * my, syy = yy_ / w_ - my * my;
-    const double det = sxx * syy - sxy * sxy, sum = sxx + syy;
-    // The smaller spread is about det / sum; the last is the distance of the origin, squared, in units of the spread.
-    return count_ >= 5 && det > kFirmSpread * sum &&
-           mx * mx * syy - 2 * mx * my * sxy + my * my * sxx < kFirmReach * det;
+    // The smaller spread is about the determinant over the sum.
+    return count_ >= 5 && sxx * syy - sxy * sxy > kFirmSpread * (sxx + syy);
+  }
+  /// True where the origin does not lie far off the samples, in units of their spread.
+  bool is_around() const {
+    const double mx = x_ / w_, my = y_ / w_;
+    const double sxx = xx_ / w_ - mx * mx, sxy = xy_ / w_ - mx * my, syy = yy_ / w_ - my * my;
+    return mx * mx * syy - 2 * mx * my * sxy + my * my * sxx < kFirmReach * (sxx * syy - sxy * sxy);
   }
   /// Weighted mean square of what the plane leaves over, x and y together.
   double misfit() const {

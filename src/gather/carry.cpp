@@ -23,6 +23,32 @@ struct Value<glm::vec3> {
   using Wide = glm::dvec3;
 };
 
+/// Adds the samples of one surface in `part`, weighed by their distance from `at`. Blocks that cannot have one are
+/// skipped.
+template <class V>
+void add_samples(AffineFit<typename Value<V>::Wide>& fit, const Plane<V>& field, const GatherSource& source,
+                 const Window& part, glm::dvec2 at, SurfaceKey key, const SurfaceTest& test) {
+  const Window& w = source.window();
+  for (int y = part.y0; y < part.y1;) {
+    const int row = (y - w.y0) / kSurfaceBlock, below = std::min(part.y1, w.y0 + (row + 1) * kSurfaceBlock);
+    for (int x = part.x0; x < part.x1;) {
+      const int column = (x - w.x0) / kSurfaceBlock, right = std::min(part.x1, w.x0 + (column + 1) * kSurfaceBlock);
+      const bool possible =
+          !source.blocks ||
+          test.may_be_in(key, source.blocks->blocks[std::size_t(row * source.blocks->columns + column)]);
+      for (int v = y; possible && v < below; ++v)
+        for (int u = x; u < right; ++u) {
+          const V value = field.at(u, v);
+          if (!(value.x == value.x) || !test.same(surface_at(*source.present, u, v), key)) continue;
+          const glm::dvec2 d(u - at.x, v - at.y);
+          fit.add(d, 1 / (0.25 + d.x * d.x + d.y * d.y), typename Value<V>::Wide(value));
+        }
+      x = right;
+    }
+    y = below;
+  }
+}
+
 /// The field at a position, from samples of one surface.
 template <class V>
 typename Value<V>::Wide read_field(const Plane<V>& field, const GatherSource& source, glm::dvec2 at, SurfaceKey key,
@@ -48,19 +74,20 @@ typename Value<V>::Wide read_field(const Plane<V>& field, const GatherSource& so
       return top + (bottom - top) * fy;
     }
   }
+  AffineFit<Wide> fit;
+  Window searched{bx + 1, by + 1, bx + 1, by + 1};     // empty
   for (int reach = 2; reach <= kWidest; reach *= 2) {  // 4x4, 8x8 ... samples
-    AffineFit<Wide> fit;
-    const int x0 = std::max(bx + 1 - reach, w.x0), x1 = std::min(bx + reach, w.x1 - 1);
-    const int y0 = std::max(by + 1 - reach, w.y0), y1 = std::min(by + reach, w.y1 - 1);
-    for (int y = y0; y <= y1; ++y)
-      for (int x = x0; x <= x1; ++x) {
-        const V v = field.at(x, y);
-        if (!(v.x == v.x) || !test.same(surface_at(p, x, y), key)) continue;
-        const glm::dvec2 d(x - ux, y - uy);
-        fit.add(d, 1 / (0.25 + d.x * d.x + d.y * d.y), Wide(v));
-      }
-    // On a line the slope across it is unknown; a wider window may have another line of the same surface.
-    if (fit.count() > 0 && (reach == kWidest || fit.is_firm()))
+    const Window wider = intersect(Window{bx + 1 - reach, by + 1 - reach, bx + 1 + reach, by + 1 + reach}, w);
+    const auto add = [&](const Window& part) { add_samples(fit, field, source, part, {ux, uy}, key, test); };
+    add({wider.x0, wider.y0, wider.x1, std::max(searched.y0, wider.y0)});
+    add({wider.x0, std::min(searched.y1, wider.y1), wider.x1, wider.y1});
+    const int y0 = std::max(searched.y0, wider.y0), y1 = std::min(searched.y1, wider.y1);
+    add({wider.x0, y0, std::max(searched.x0, wider.x0), y1});
+    add({std::min(searched.x1, wider.x1), y0, wider.x1, y1});
+    searched = wider;
+    // On a line the slope across it is unknown, but a wider window may have another line of the same surface; and a
+    // surface that is hidden here is carried on by what is seen of it around.
+    if (fit.count() > 0 && (reach == kWidest || (fit.spans_plane() && fit.is_around())))
       return fit.misfit() < kMisfit * kMisfit ? fit.value() : Wide(kNowhere);
   }
   return Wide(kNowhere);

@@ -35,7 +35,8 @@ double outline_weight(const AffineFit<glm::dvec3>& motion) {
   // Where a sample came from is here minus its displacement; so the picture's map there has the slope of minus that.
   const double a = gx.x, b = gy.x, c = gx.y, d = gy.y;
   const double xx = -a + 0.5 * (a * a + c * c), yy = -d + 0.5 * (b * b + d * d), xy = 0.5 * (-b - c + a * b + c * d);
-  const double shear = ((xx - yy) * (xx - yy) / 2 + 2 * xy * xy) / (kShear * kShear), bend = motion.misfit() / (kBend * kBend);
+  const double shear = ((xx - yy) * (xx - yy) / 2 + 2 * xy * xy) / (kShear * kShear),
+               bend = motion.misfit() / (kBend * kBend);
   return 1 / (1 + shear + bend);
 }
 
@@ -100,7 +101,8 @@ void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arr
   }
   fill_gaps(tracks);
   // A few samples tell no strain: trust in the outline never grows with distance.
-  for (std::size_t f = c.present + 1; f < frames; ++f) tracks[f].weight = std::min(tracks[f].weight, tracks[f - 1].weight);
+  for (std::size_t f = c.present + 1; f < frames; ++f)
+    tracks[f].weight = std::min(tracks[f].weight, tracks[f - 1].weight);
   for (std::size_t f = c.present; f-- > 0;) tracks[f].weight = std::min(tracks[f].weight, tracks[f + 1].weight);
 
   scratch.px.clear(), scratch.py.clear(), scratch.pw.clear(), scratch.is_hit.clear();

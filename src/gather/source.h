@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "gather/surface_blocks.h"
 #include "resolve/present.h"
 
 namespace varve {
@@ -28,6 +29,7 @@ struct GatherSource {
   const Plane<float>* local_light = nullptr;       ///< mean luminance around each pixel on its surface; null: no gain
 
   const Window& window() const { return present->color.window(); }
+  const SurfaceBlocks* blocks = nullptr;  ///< null: searches look everywhere
   /// Position of the sample of pixel (x, y).
   glm::dvec2 position(int x, int y) const { return {x + 0.5 + jitter.x, y + 0.5 + jitter.y}; }
   /// Color and companion of a pixel given as y * 65536 + x from the window's corner.
@@ -53,6 +55,11 @@ struct SurfaceTest {
   float tolerance = 0.15f;
 
   bool same(SurfaceKey a, SurfaceKey b) const { return (!ids || a.id == b.id) && (!depths || near(a.depth, b.depth)); }
+  /// False where a block has no sample that could be the same.
+  bool may_be_in(SurfaceKey key, const SurfaceBlock& b) const {
+    return (!ids || (b.ids & id_bit(key.id)) != 0) && (!depths || near(key.depth, b.near) || near(key.depth, b.far) ||
+                                                       (key.depth >= b.near && key.depth <= b.far));
+  }
   bool near(float a, float b) const {
     if (a == b) return true;  // both infinitely far as well
     const float nearer = a < b ? a : b;

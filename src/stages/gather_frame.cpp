@@ -26,6 +26,9 @@ struct SubjectFrames {
   GatherSource bare(std::size_t i) const {
     GatherSource s;
     s.present = &present(i);
+    SurfaceBlocks& blocks = memory[i].blocks;
+    if (blocks.blocks.empty()) blocks = summarize_surfaces(present(i));
+    s.blocks = &blocks;
     if (const auto& jitter = window[i].headers.jitter) s.jitter = {jitter->x, jitter->y};
     return s;
   }

@@ -13,8 +13,9 @@ namespace varve {
 /// Of one subject in one frame.
 struct GatherFrame {
   Plane<glm::vec2> backward, forward;  ///< made from the neighbor's or checked against them; empty: as in the file
-  Plane<float> light;                  ///< local_light() of the pilot; empty until it is needed
-  Plane<LightRange> range;             ///< local_range() of it
+  SurfaceBlocks blocks;
+  Plane<float> light;       ///< local_light() of the pilot; empty until it is needed
+  Plane<LightRange> range;  ///< local_range() of it
 };
 
 /// By place in the schedule; frames that are passed are forgotten.
