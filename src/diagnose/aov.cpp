@@ -45,6 +45,8 @@ constexpr Aov kAovs[] = {
     {"gain", "", PixelType::float32, "fraction", "0 to 1", "viridis", 0, 1,
      "Share of the pixel's samples that count fully: lower where light changed and frames were turned down.",
      kByGather},
+    {"removed", "", PixelType::float32, "luminance", "0 and up", "inferno", 0, 1,
+     "Energy taken away: luminance of the fireflies that --firefly-limit held back.", kByGather},
     {"round-trip", "", PixelType::float32, "pixels", "0 and up", "inferno", 0, 1,
      "How far the vector to the frame before and the vector that leads back from there miss each other. 0 where one of "
      "them is not known.",

@@ -65,6 +65,7 @@ struct PixelSums {
   glm::dvec4 color{0};
   SideWeights all, past, present, future;
   double light = 0, light_squares = 0;  // luminance, centred at the first
+  double removed = 0;                   // luminance of fireflies
   double trust = 0;                     // sum of the arrivals' own weights
   int arrivals = 0;
 };
@@ -80,7 +81,8 @@ PixelSums sum_pixel(const PixelContext& c, const PixelWeights& pixel) {
     const Arrival* a = pixel.arrivals[i];
     if (!a) continue;
     const double weight = double(pixel.weights[i]);
-    const glm::dvec4 color = lit(c.sources[a->frame].color(a->pixel), a->gain);
+    const glm::dvec4 color = lit(c.sources[a->frame].color(a->pixel), a->gain * pixel.scale[i]);
+    r.removed += weight * double(a->light) * (1 - double(pixel.scale[i]));
     r.color += color * weight;
     r.all.add(weight);
     (a->frame < c.present ? r.past : a->frame > c.present ? r.future : r.present).add(weight);
@@ -109,6 +111,7 @@ void write_diagnostics(AccumulateDiagnostics& d, const PixelSums& r, const Pixel
   const double squares = r.all.squares / (r.all.sum * r.all.sum);
   d.variance.at(x, y) = float(spread * squares);
   d.surfaces.at(x, y) = float(pixel.surfaces);
+  d.removed.at(x, y) = float(r.removed / r.all.sum);
   d.gain.at(x, y) = float(r.trust / r.arrivals);
   std::uint64_t seen[8] = {};  // a bit for each frame of the widest window
   int frames = 0;
@@ -134,7 +137,8 @@ void write_pixel(Accumulated& out, const PixelContext& c, const PixelWeights& pi
     glm::dvec4 sum(0);
     for (std::size_t i = 0; i < pixel.weights.size(); ++i)
       if (const Arrival* a = pixel.arrivals[i])
-        sum += glm::dvec4(c.sources[a->frame].companion(k, a->pixel)) * (double(a->gain) * double(pixel.weights[i]));
+        sum += glm::dvec4(c.sources[a->frame].companion(k, a->pixel)) *
+               (double(a->gain * pixel.scale[i]) * double(pixel.weights[i]));
     out.history.companions[k].at(x, y) = finite_color(sum / r.all.sum);
   }
 }
@@ -152,7 +156,7 @@ Accumulated make_output(const Present& present, const DiagnosticsWanted& wanted)
   if (wanted.counts)
     for (Plane<float>* plane : {&d.count_past, &d.count_future}) *plane = Plane<float>(w, 0, 0.0f);
   if (wanted.gather)
-    for (Plane<float>* plane : {&d.variance, &d.frames, &d.surfaces, &d.gain, &d.round_trip})
+    for (Plane<float>* plane : {&d.variance, &d.frames, &d.surfaces, &d.gain, &d.removed, &d.round_trip})
       *plane = Plane<float>(w, 0, 0.0f);
   return out;
 }
@@ -189,6 +193,7 @@ Accumulated gather(std::span<const GatherSource> sources, std::size_t present, c
   context.axis = cell_axis(parameters.filter, parameters.cells);
   context.sigma = parameters.sigma;
   context.change_limit = parameters.change_limit;
+  context.firefly_limit = parameters.firefly_limit;
   context.test = test;
   context.kernel = cell_kernel_for(isa);
   const TileGrid grid{w, context.axis.radius - 0.5 + 1.0 / kBinsPerPixel};

@@ -17,6 +17,7 @@ struct GatherParameters {
   SampleFilter filter = SampleFilter::none;  ///< the filter of the output; none: a box of one pixel
   double return_tolerance = 0;   ///< px, besides a hundredth of the way: how far there and back may miss; 0: no test
   double change_limit = 3;       ///< standard errors by which the light of other frames may differ; 0: any
+  double firefly_limit = 0;      ///< deviations beyond the median from which on a sample is held back; 0: never
   bool gain = true;              ///< follow changes of light that the vectors do not know
   int gain_window = 15;          ///< edge of the window that light is measured in, odd
   double gain_dead_zone = 0.10;  ///< relative change of light that noise alone may make

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gather/coverage.h"
+#include "gather/fireflies.h"
 #include "gather/temporal_change.h"
 
 namespace varve {
@@ -106,9 +107,12 @@ void order_by_surface(Surfaces& s, const PixelContext& c, int x, int y, PixelScr
 }
 
 void weigh_light(const Surfaces& s, const PixelContext& c, PixelScratch& scratch) {
+  scratch.scale.assign(scratch.ordered.size(), 1.0f);
   for (int k = 0; k < s.count; ++k) {
     const Surface& surface = s.list[std::size_t(k)];
     const auto begin = std::size_t(surface.begin);
+    hold_fireflies({scratch.ordered.data() + begin, std::size_t(surface.count)}, c.firefly_limit,
+                   scratch.scale.data() + begin, scratch.work);
     turn_down_changed({scratch.ordered.data() + begin, std::size_t(surface.count)}, c.present, c.change_limit,
                       scratch.weight.data() + begin);
   }
@@ -174,7 +178,7 @@ PixelWeights weigh_pixel(const PixelContext& c, int x, int y, PixelScratch& scra
     c.kernel->sample_weights(scratch.wx.data() + begin, scratch.wy.data() + begin, std::ptrdiff_t(size), surface.padded,
                              cells, scratch.share.data(), scratch.result.data() + begin);
   }
-  return {scratch.ordered, scratch.result, s.count};
+  return {scratch.ordered, scratch.result, scratch.scale, s.count};
 }
 
 }  // namespace varve

@@ -29,6 +29,7 @@ struct PixelContext {
   CellAxis axis;
   double sigma = 0.09;
   double change_limit = 3;
+  double firefly_limit = 0;
   SurfaceTest test;
   const CellKernel* kernel = nullptr;
 };
@@ -42,7 +43,7 @@ float gaussian_scale(const PixelContext& context, std::span<const float> weights
 struct PixelScratch {
   std::vector<const Arrival*> found, ordered;
   std::vector<std::uint8_t> surface;
-  std::vector<float> x, y, weight, wx, wy, result;
+  std::vector<float> x, y, weight, wx, wy, result, scale, work;
   std::vector<float> sums, share;
   std::vector<float> px, py, pw, cx, cy, masked, hits, misses;  // of the coverage
   std::vector<std::uint8_t> is_hit;
@@ -53,6 +54,7 @@ struct PixelScratch {
 struct PixelWeights {
   std::span<const Arrival* const> arrivals;  ///< null where groups are filled up
   std::span<const float> weights;
+  std::span<const float> scale;  ///< of their light, below 1 for fireflies
   int surfaces = 0;
 };
 

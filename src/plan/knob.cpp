@@ -149,6 +149,10 @@ std::vector<Knob> knobs() {
        "Standard errors by which the light of frames further off may differ in a pixel before they count less, as under "
        "a highlight that slides by. 0: no test. Small values shrink the window everywhere.",
        number([](auto& p) -> auto& { return p.gather.change_limit; }, {0, 1000})},
+      {"firefly-limit", "SIGMAS", around, advanced,
+       "Deviations from the median of a pixel's samples beyond which a brighter one is held back. 0 holds back none; "
+       "small values, such as 6, take energy away, which the plane removed shows.",
+       number([](auto& p) -> auto& { return p.gather.firefly_limit; }, {0, 1e6})},
       {"gain", "WORD", around, advanced, "What is done about light that changes.",
        word(
            [](auto& p) -> auto& { return p.gather.gain; }, kGains)},

@@ -56,7 +56,7 @@ struct AccumulateDiagnostics {
   // Only of accumulators that look ahead; `reject` is then that of the past.
   Plane<float> count_past, count_future;
   Plane<std::uint32_t> reject_future;
-  Plane<float> variance, frames, surfaces, gain, round_trip;  // only of the gather
+  Plane<float> variance, frames, surfaces, gain, removed, round_trip;  // only of the gather
 };
 
 struct AccumulateView;  // resolve/accumulate_row.h

@@ -217,6 +217,7 @@ Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubje
   if (aov.name == "frames") fill(of(a.diagnostics.frames));
   if (aov.name == "surfaces") fill(of(a.diagnostics.surfaces));
   if (aov.name == "gain") fill(of(a.diagnostics.gain));
+  if (aov.name == "removed") fill(of(a.diagnostics.removed));
   if (aov.name == "round-trip") fill(of(a.diagnostics.round_trip));
   if (aov.name == "reject-future") fill(of(a.diagnostics.reject_future));
   if (aov.name == "motion")
