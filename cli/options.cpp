@@ -9,6 +9,10 @@ namespace {
 
 constexpr unsigned kInput = kResolve | kProbe | kMeasure | kFloor, kEach = kInput | kCompare;
 
+constexpr Word<ChannelWeights> kChannelWeights[] = {
+    {"beauty", ChannelWeights::beauty, "those of the color: lights that add up to it still do"},
+    {"own", ChannelWeights::own, "its own neighborhood decides, as if it were the color; motion and depth are shared"},
+};
 constexpr Word<bool> kKeeps[] = {
     {"all", true, "other channels and parts pass through, bit for bit"},
     {"none", false, "only what was resolved is written"},
@@ -92,6 +96,19 @@ void add_channel_options(std::vector<Option>& rows) {
            },
            "all, or names of layers with commas between")})
       .repeats = true;
+  add({"channels", 0, "LIST", kResolve | kProbe, kAdvanced, group,
+       "Further layers and channels to resolve, such as lights, reflections, occlusion and shadows. Names by their end "
+       "will do; * stands for any characters and ? for one. Vectors, depths, normals and ids are never averaged.",
+       list(
+           [](Settings& s, const std::string& name) {
+             s.job.roles.channels.push_back(name);
+             return true;
+           },
+           "names of layers or channels with commas between")})
+      .repeats = true;
+  add({"channel-weights", 0, "WHICH", kResolve | kProbe, kAdvanced, group, "By which weights --channels are resolved.",
+       word(
+           [](auto& s) -> auto& { return s.job.roles.channel_weights; }, kChannelWeights)});
   add({"map", 0, "ROLE=CHANNEL", kInput, kAdvanced, group,
        "Name the channel of a role, where its name does not tell. motion leads to the previous frame, forward to the "
        "next.",

@@ -12,6 +12,7 @@
 #include "plan/preset.h"
 #include "resolve/accumulate.h"
 #include "stages/frame_window.h"
+#include "stages/gather_frame.h"
 #include "stages/preflight.h"
 #include "stages/previews.h"
 #include "stages/read_present.h"
@@ -25,6 +26,7 @@ namespace {
 struct SubjectState {
   ForwardMemory forward;
   History history;
+  GatherMemory gathered;
 };
 
 /// Made once, used for every frame.
@@ -35,6 +37,7 @@ struct Setup {
   JitterSource jitter;
   std::string parameters, hash;
   FrameReach reach;
+  GatherParameters gather;
   std::vector<const Aov*> aovs;  ///< asked for
   std::optional<ColorConversion> into_working_space, out_of_working_space;
   std::optional<DisplayTransform> display;
@@ -64,10 +67,12 @@ Setup set_up(const ResolveJob& job) {
           {},
           {},
           reach_of(job),
+          job.parameters.gather,
           planned_aovs(job.request, job.parameters.accumulator),
           {},
           {},
           {}};
+  s.gather.filter = job.parameters.recursive.sample_filter;
   s.parameters = describe_parameters(job, s.info);
   s.hash = hash_of(s.parameters + describe_side_inputs(job));
   // Around the resolve: from the input's space to scene-linear, and from there to the output's.
@@ -105,6 +110,16 @@ void check_same_subjects(const FrameHeaders& first, const FrameHeaders& now, con
                                                   (b.color[k] ? "there" : "missing") + " but not so in frame " +
                                                   std::to_string(first.frame) +
                                                   "; render it again, or leave it out with --frames");
+    const auto same_places = [](const Companion& c, const Companion& d) {
+      for (std::size_t k = 0; k < 4; ++k)
+        if (c.channels[k].has_value() != d.channels[k].has_value()) return false;
+      return c.layer == d.layer && c.color == d.color;
+    };
+    if (!std::equal(a.companions.begin(), a.companions.end(), b.companions.begin(), b.companions.end(), same_places))
+      throw Failure(ExitCode::inconsistent,
+                    where + ", " + layer + ": what --channels names is not what it is in frame " +
+                        std::to_string(first.frame) +
+                        "; render it again, name other channels, or leave it out with --frames");
     const bool other_vectors =
         a.backward.has_value() != b.backward.has_value() || a.forward.has_value() != b.forward.has_value();
     const bool other_marks = (plan.use_id && a.id.has_value() != b.id.has_value()) ||
@@ -194,6 +209,10 @@ Resolved resolve_recursive(const Setup& s, const FrameHeaders& headers, const Pr
                            const ScheduledFrame& scheduled, SubjectState& state, Workers& workers) {
   const Parameters& parameters = s.job.parameters;
   if (scheduled.restart) state.history = {};
+  if (!present.companions.empty())
+    throw Failure(
+        ExitCode::inconsistent,
+        "the recursive accumulator resolves --channels by their own weights only; give --channel-weights own");
   Resolved r;
   std::optional<glm::dvec2> jitter;
   if (headers.jitter) jitter = glm::dvec2(headers.jitter->x, headers.jitter->y);
@@ -323,8 +342,16 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     if (stop()) break;
 
     // Resolve, subject by subject.
-    std::vector<Resolved> resolved =
-        two_sided ? resolve_two_sided(*two_sided, i, source) : resolve_recursive(s, source, scheduled, states, workers);
+    std::vector<Resolved> resolved;
+    if (two_sided)
+      resolved = resolve_two_sided(*two_sided, i, source);
+    else if (job.parameters.accumulator == Accumulator::gather)
+      for (std::size_t k = 0; k < source.presents.size(); ++k)
+        resolved.push_back({gather_frame(window, k, i, first, last, s.gather, states[k].gathered,
+                                         diagnostics_wanted(s.aovs), workers),
+                            {}});
+    else
+      resolved = resolve_recursive(s, source, scheduled, states, workers);
     if (summary.stopped) break;
     count(report, source, resolved);
     report.resolve_seconds = clock.lap();

@@ -85,6 +85,12 @@ void find_motion(const ChannelIndex& index, const ChannelGroup& color, bool main
 void find_marks(const ChannelIndex& index, const ChannelGroup& color, bool main_color, const RoleRequest& request,
                 Subject& subject);
 
+/// Finds the layers and channels of request.channels in file 0 (find_channels.cpp) and makes each a companion of the
+/// subject it belongs to or a subject of its own. Only what may be averaged: throws Failure(inconsistent) with the
+/// reason when a name is not there, or leads to vectors, depths, ids and the like, or to a color that is resolved
+/// already; what a pattern meets of these is left out and noted.
+void add_channels(const ChannelIndex& index, const RoleRequest& request, std::vector<Subject>& subjects);
+
 /// The channel that `--map role=` names; in the subject's part if it is there, else the first of that name. None if the
 /// role is not mapped. Throws Failure(inconsistent) if there is no such channel, or if it holds integers and `integers`
 /// does not allow them.

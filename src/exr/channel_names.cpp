@@ -306,6 +306,7 @@ std::vector<Subject> find_subjects(std::span<const FileHeader> files, const Role
     find_marks(index, *color.color.group, color.color.rank <= 1, request, subject);
     subjects.push_back(std::move(subject));
   }
+  add_channels(index, request, subjects);
   return subjects;
 }
 

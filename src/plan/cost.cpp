@@ -73,21 +73,26 @@ std::size_t pixels_of(const SequenceInfo& info, const Subject& subject) {
 
 using PartKey = std::pair<int, int>;
 
-// Parts that lose a color and must be written anew; every other part is copied chunk by chunk.
+// Parts that lose a color or a companion and must be written anew; every other part is copied chunk by chunk.
 std::set<PartKey> rewritten_parts(const SequenceInfo& info) {
   std::set<PartKey> parts;
   for (const Subject& subject : info.first.subjects)
-    for (const std::optional<ChannelRef>& channel : subject.color)
-      if (channel) parts.insert({channel->file, channel->part});
+    for (const int part : parts_of(subject)) parts.insert({0, part});
   return parts;
 }
 
+// Of the channels that are resolved.
 std::size_t color_bytes(const SequenceInfo& info) {
   std::size_t bytes = 0;
-  for (const Subject& subject : info.first.subjects)
-    for (const std::optional<ChannelRef>& channel : subject.color)
-      if (channel)
-        bytes += bytes_of(part_of(info, *channel), part_of(info, *channel).channels[std::size_t(channel->channel)]);
+  const auto add = [&](const std::optional<ChannelRef>& channel) {
+    if (channel)
+      bytes += bytes_of(part_of(info, *channel), part_of(info, *channel).channels[std::size_t(channel->channel)]);
+  };
+  for (const Subject& subject : info.first.subjects) {
+    for (const std::optional<ChannelRef>& channel : subject.color) add(channel);
+    for (const Companion& companion : subject.companions)
+      for (const std::optional<ChannelRef>& channel : companion.channels) add(channel);
+  }
   return bytes;
 }
 
@@ -117,7 +122,10 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
     histories += pixels * (2 * (16 + 8) + (depth_test ? 4 : 0));  // color, count and weight; depth of the last frame
     if (two_sided)  // the past of the next block too, three frames' vectors
       histories += pixels * (24 + 3 * 20 + waiting_bytes_per_pixel(parameters, output));
-    at_work = std::max(at_work, pixels * (16 + (plan.use_motion ? 8 : 0) + (plan.use_depth ? 4 : 0) +
+    // A companion's sample, and its values of the last frame and of this one.
+    const std::size_t companions = subject.companions.size();
+    histories += pixels * 2 * 16 * companions;
+    at_work = std::max(at_work, pixels * (16 + 16 * companions + (plan.use_motion ? 8 : 0) + (plan.use_depth ? 4 : 0) +
                                           diagnostic_bytes_per_pixel(output, parameters.accumulator)));
   }
   return kBaseBytes + raw + histories + at_work;

@@ -201,6 +201,8 @@ std::string roles_of(const SequenceInfo& info, ChannelRef ref) {
       if (channel && *channel == ref) role.append(role.empty() ? "" : "+").append(name);
     };
     for (std::size_t i = 0; i < 4; ++i) take(s.color[i], kColor[i]);
+    for (const Companion& companion : s.companions)
+      for (const std::optional<ChannelRef>& channel : companion.channels) take(channel, "companion");
     take(s.depth, "depth");
     take(s.id, "id");
     if (s.normal) take((*s.normal)[0], "normal.x"), take((*s.normal)[1], "normal.y"), take((*s.normal)[2], "normal.z");

@@ -49,6 +49,10 @@ constexpr Word<SampleFilter> kSampleFilters[] = {
     {"blackman-harris", SampleFilter::blackman_harris, "narrow with very low side lobes, the usual film filter"},
     {"mitchell", SampleFilter::mitchell, "Mitchell-Netravali, with negative lobes"},
 };
+constexpr Word<bool> kGains[] = {
+    {"on", true, "samples of other frames follow the light of their surface, and count less where it changed"},
+    {"off", false, "samples are taken as they are"},
+};
 constexpr Word<Box> kBoxes[] = {
     {"none", Box::none, "history is used as it is"},
     {"minmax", Box::minmax, "least and greatest of the neighbors"},
@@ -87,8 +91,8 @@ Value<Parameters> number(At at, Range range) {
 
 std::vector<Knob> knobs() {
   constexpr auto basic = Tier::basic, advanced = Tier::advanced, expert = Tier::expert;
-  constexpr std::string_view motion = "Motion and depth", history = "History", rectify = "Rectification",
-                             sides = "Past and future (--accumulator two-sided)";
+  constexpr std::string_view motion = "Motion and depth", history = "History", rectify = "Rectification";
+  constexpr std::string_view sides = "Past and future (--accumulator two-sided)", around = "Gather";
   return {
       {"dilation", "WORD", motion, advanced, "Whose vector a pixel follows.",
        word(
@@ -143,6 +147,29 @@ std::vector<Knob> knobs() {
        "How far a vector and the vector that leads back may miss each other, besides a "
        "hundredth of their lengths, before the pixel restarts. 0: no test. Needs vectors in both directions.",
        number([](auto& p) -> auto& { return p.two_sided.return_tolerance; }, {0, 1000})},
+      {"reach", "FRAMES", around, basic,
+       "Frames on each side of the resolved one that take part. More frames, less noise and aliasing; cost grows with "
+       "them.",
+       number([](auto& p) -> auto& { return p.gather.reach; }, {0, 256})},
+      {"cells", "COUNT", around, advanced,
+       "Cells on a pixel's edge. Each cell has the same say in the pixel, however many samples fall into it.",
+       number([](auto& p) -> auto& { return p.gather.cells; }, {1, 8})},
+      {"sigma", "PIXELS", around, expert,
+       "Width of the Gaussian by which a cell weighs the samples around it. Near 0 only the nearest counts; wide ones "
+       "blur. It is widened where there are few frames.",
+       number([](auto& p) -> auto& { return p.gather.sigma; }, {0.01, 2})},
+      {"gain", "WORD", around, advanced, "What is done about light that changes.",
+       word(
+           [](auto& p) -> auto& { return p.gather.gain; }, kGains)},
+      {"gain-window", "PIXELS", around, expert, "Edge of the window, odd, in which light is measured.",
+       number([](auto& p) -> auto& { return p.gather.gain_window; }, {1, 127})},
+      {"gain-dead-zone", "RATIO", around, expert,
+       "Relative change of light that counts as noise. 0 follows every change, noise too.",
+       number([](auto& p) -> auto& { return p.gather.gain_dead_zone; }, {0, 10})},
+      {"gain-weight", "RATIO", around, expert,
+       "Relative change of light at which a frame counts half. Small values leave out frames of other light, large "
+       "ones trust the gain.",
+       number([](auto& p) -> auto& { return p.gather.gain_weight; }, {0, 1000, true})},
 
       {"box", "WORD", rectify, advanced, "The colors that history may have, made from the neighbors of the present.",
        word(

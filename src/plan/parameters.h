@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "gather/gather.h"
 #include "motion/motion.h"
 #include "resolve/accumulate.h"
 #include "resolve/two_sided.h"
@@ -16,6 +17,7 @@ struct Parameters {
   RecursiveParameters recursive;
   RectifyParameters rectify;
   TwoSidedParameters two_sided;
+  GatherParameters gather;
 };
 
 }  // namespace varve

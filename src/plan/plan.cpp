@@ -34,8 +34,6 @@ bool has_motion(const Subject& s) { return s.backward || s.forward; }
 
 // What was asked for outright and cannot be done. Falling back silently would change the picture without a word.
 void check_possible(const SequenceInfo& info, const Parameters& parameters) {
-  if (parameters.accumulator == Accumulator::gather)
-    throw Failure(ExitCode::usage, "this accumulator is not built yet; give --accumulator recursive");
   if (parameters.recursive.disocclusion == Disocclusion::depth)
     for (const Subject& subject : info.first.subjects)
       if (!subject.depth)
@@ -202,6 +200,8 @@ class Planner {
     };
     for (const Subject& subject : info_.first.subjects) {
       for (const std::optional<ChannelRef>& channel : subject.color) read(channel);
+      for (const Companion& companion : subject.companions)
+        for (const std::optional<ChannelRef>& channel : companion.channels) read(channel);
       if (plan_.use_depth) read(subject.depth);
       if (plan_.use_id) read(subject.id);
       if (plan_.use_normal && subject.normal)
@@ -267,6 +267,8 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   check_possible(info, parameters);
   Plan plan;
   Planner planner(info, parameters, output, plan);
+  if (parameters.accumulator == Accumulator::gather)
+    plan.use_depth = plan.use_id = plan.use_forward = true;
   planner.add("read", true, "");
   planner.add("sanitize", true, "pixels that are not finite are kept from spreading");
   planner.motion();

@@ -39,10 +39,11 @@ struct RectifyParameters {
 
 /// What one frame leaves to the next. Made only by accumulate(); empty before the first frame and after a cut.
 struct History {
-  Plane<glm::vec4> color;  ///< resolved RGBA, float, no border
-  Plane<float> total;      ///< sum of sample weights so far; 0: no valid data
-  Plane<float> spread;     ///< sum of squared normalized weights; 1/spread is the effective sample count
-  Plane<float> depth;      ///< of the frame it was made from; empty without the depth test
+  Plane<glm::vec4> color;                    ///< resolved RGBA, float, no border
+  std::vector<Plane<glm::vec4>> companions;  ///< resolved, in the order of Present::companions
+  Plane<float> total;                        ///< sum of sample weights so far; 0: no valid data
+  Plane<float> spread;  ///< sum of squared normalized weights; 1/spread is the effective sample count
+  Plane<float> depth;   ///< of the frame it was made from; empty without the depth test
   std::vector<std::uint8_t> rows_valid;
 
   bool empty() const { return color.empty(); }

@@ -1,4 +1,5 @@
 #include "stages/preflight.h"
+#include "stages/gather_frame.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -114,6 +115,10 @@ std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const Sequenc
 
 FrameReach reach_of(const ResolveJob& job) {
   if (job.parameters.accumulator == Accumulator::recursive) return {job.preroll, 0, true};
+  if (job.parameters.accumulator == Accumulator::gather) {
+    const int reach = gather_reach(job.parameters.gather);
+    return {reach, reach, false};
+  }
   const int look_ahead = look_ahead_frames(job.parameters.two_sided, job.parameters.recursive.alpha);
   return {look_ahead, look_ahead, false, look_ahead};
 }
@@ -150,6 +155,9 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   if (!cuts.empty()) text += " cuts=" + format_frame_list(cuts);
   text += " jitter=" + describe_jitter(job.jitter) + " convention=" + job.roles.convention;
   for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
+  for (const std::string& channels : job.roles.channels) text += " channels=" + channels;
+  if (!job.roles.channels.empty())
+    text += std::string(" channel-weights=") + (job.roles.channel_weights == ChannelWeights::own ? "own" : "beauty");
   for (const auto& [role, channel] : job.roles.map) text += " map:" + role + "=" + channel;
   for (const Subject& subject : info.first.subjects) {
     const MotionEncoding& e = subject.backward ? subject.backward_encoding : subject.forward_encoding;

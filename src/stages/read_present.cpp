@@ -109,6 +109,21 @@ Plane<float> read_mask(const RawPlane& raw, const Window& window, float neutral,
   return mask;
 }
 
+/// The channels of a companion, interleaved; 0 where there is none, and outside their own window: no light comes from
+/// there.
+Plane<glm::vec4> read_companion(const Companion& companion, const FileSet& files, const Window& window,
+                                Workers& workers) {
+  Plane<glm::vec4> plane(window, kPresentBorder, glm::vec4(0.0f));
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (!companion.channels[k]) continue;
+    const Plane<float> channel = read_plane(pixels_of(files, *companion.channels[k]), window, 0.0f, workers);
+    workers.for_rows(window.y0, window.y1, [&](int y) {
+      for (int x = 0; x < window.width(); ++x) plane.row(y)[x][int(k)] = channel.row(y)[x];
+    });
+  }
+  return plane;
+}
+
 std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const ChannelNeeds& needs, int file) {
   std::vector<ChannelRef> wanted;
   const auto add = [&](ChannelRef ref) {
@@ -117,6 +132,9 @@ std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const Chan
   for (const Subject& subject : headers.subjects) {
     for (const auto& color : subject.color)
       if (color) add(*color);
+    for (const Companion& companion : subject.companions)
+      for (const auto& channel : companion.channels)
+        if (channel) add(*channel);
     if (needs.depth && subject.depth) add(*subject.depth);
     if (needs.id && subject.id) add(*subject.id);
     if (needs.normal && subject.normal)
@@ -126,8 +144,8 @@ std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const Chan
     const auto& vectors = subject.backward ? subject.backward : subject.forward;
     if (needs.motion && vectors) add((*vectors)[0]), add((*vectors)[1]);
     if (needs.forward && subject.forward) add((*subject.forward)[0]), add((*subject.forward)[1]);
-    if (needs.whole_parts && file == 0) {
-      const int part = part_of(subject);
+    if (!needs.whole_parts || file != 0) continue;
+    for (const int part : parts_of(subject)) {
       const std::size_t channels = headers.files.front().parts[std::size_t(part)].channels.size();
       for (int channel = 0; channel < int(channels); ++channel) add({0, part, channel});
     }
@@ -160,6 +178,11 @@ Present read_present(const Subject& subject, const FileSet& pixels, const Window
   present.color = read_color(subject, pixels, window, workers);
   if (into_working_space) into_working_space->apply(present.color, workers);
   sanitize(present, workers);
+  for (const Companion& companion : subject.companions) {
+    present.companions.push_back(read_companion(companion, pixels, window, workers));
+    if (companion.color && into_working_space) into_working_space->apply(present.companions.back(), workers);
+  }
+  sanitize_companions(present, workers);
 
   Plane<float> depth;
   if (options.use_depth && subject.depth) {

@@ -15,10 +15,11 @@ namespace varve {
 /// Pixels of a frame, one entry per file (FrameHeaders::files).
 using FileSet = std::vector<FramePixels>;
 
-/// What of a frame's files is read besides the colors of its subjects. Parts without a subject's color never are.
+/// What of a frame's files is read besides the colors of its subjects and their companions. Parts
+/// without any of these never are.
 struct ChannelNeeds {
   bool depth = false, motion = false;
-  bool whole_parts = false;  ///< every channel of the parts that hold a color
+  bool whole_parts = false;  ///< every channel of the parts that hold a color or a companion
   bool forward = false;      ///< vectors to the next frame, even where there are others
   bool id = false, normal = false, reactive = false, responsive = false;
 };

@@ -47,10 +47,10 @@ bool several_layers(const std::vector<ResolvedSubject>& subjects) {
   return layers.size() > 1;
 }
 
-/// The resolved color of a subject, converted to the file's space when asked.
-Plane<glm::vec4> color_to_write(const ResolvedSubject& resolved, const ColorConversion* conversion, Workers& workers) {
+/// A resolved color, converted to the file's space; empty when nothing is to be converted.
+Plane<glm::vec4> color_to_write(const Plane<glm::vec4>& resolved, const ColorConversion* conversion, Workers& workers) {
   if (!conversion) return {};
-  Plane<glm::vec4> color = resolved.accumulated->history.color.clone();
+  Plane<glm::vec4> color = resolved.clone();
   conversion->apply(color, workers);
   // A transform may leave the numbers (a log of a negative); outputs hold finite numbers only.
   const Window& w = color.window();
@@ -68,7 +68,7 @@ Plane<glm::vec4> color_to_write(const ResolvedSubject& resolved, const ColorConv
 /// The resolved color in the stored types of its channels.
 void add_color(FileOutput& out, OutputPart& to, const Part& part, const ResolvedSubject& resolved,
                const ColorConversion* conversion, Workers& workers) {
-  const Plane<glm::vec4> converted = color_to_write(resolved, conversion, workers);
+  const Plane<glm::vec4> converted = color_to_write(resolved.accumulated->history.color, conversion, workers);
   const Plane<glm::vec4>& color = converted.empty() ? resolved.accumulated->history.color : converted;
   const Window& window = color.window();
   std::array<RawPlane*, 4> planes{};
@@ -90,6 +90,37 @@ void add_color(FileOutput& out, OutputPart& to, const Part& part, const Resolved
     }
     overflows += held;
   });
+  out.half_overflows += overflows;
+}
+
+/// Companions of a subject that lie in part `p`, in their stored types. Where the part reaches beyond the subject's
+/// window, its channels stay as they were.
+void add_companions(FileOutput& out, OutputPart& to, const Part& part, int p, const std::vector<RawPlane>& pixels,
+                    const ResolvedSubject& resolved, const ColorConversion* conversion, Workers& workers) {
+  std::atomic<std::size_t> overflows = 0;
+  for (std::size_t i = 0; i < resolved.subject->companions.size(); ++i) {
+    const Companion& companion = resolved.subject->companions[i];
+    const auto lies_here = [&](const auto& ref) { return ref && ref->part == p; };
+    if (std::none_of(companion.channels.begin(), companion.channels.end(), lies_here)) continue;
+    const Plane<glm::vec4>& history = resolved.accumulated->history.companions[i];
+    const Plane<glm::vec4> converted = color_to_write(history, companion.color ? conversion : nullptr, workers);
+    const Plane<glm::vec4>& values = converted.empty() ? history : converted;
+    const Window common = intersect(values.window(), part.data_window);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto& ref = companion.channels[k];
+      if (!lies_here(ref)) continue;
+      const RawPlane& stored = pixels[std::size_t(ref->channel)];
+      RawPlane& plane = out.planes.emplace_back(make_raw_plane(stored.type, part.data_window));
+      if (common != part.data_window) plane.storage = stored.storage.clone();
+      const std::size_t left = std::size_t(common.x0 - part.data_window.x0) * bytes_per_pixel(stored.type);
+      workers.for_rows(common.y0, common.y1, [&](int y) {
+        std::vector<float> row(static_cast<std::size_t>(common.width()));
+        for (int x = common.x0; x < common.x1; ++x) row[std::size_t(x - common.x0)] = values.at(x, y)[int(k)];
+        overflows += store_row(stored.type, row.data(), plane.row(y - part.data_window.y0) + left, common.width());
+      });
+      to.channels.push_back({part.channels[std::size_t(ref->channel)], &plane});
+    }
+  }
   out.half_overflows += overflows;
 }
 
@@ -134,6 +165,7 @@ FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
     to.source_part = p;
     std::set<std::string> stale;
     for (const ResolvedSubject& resolved : subjects) {
+      add_companions(out, to, part, p, pixels.planes[std::size_t(p)], resolved, out_of_working_space, workers);
       if (part_of(*resolved.subject) != p) continue;
       stale.merge(stale_diagnostics(*resolved.subject));
       add_color(out, to, part, resolved, out_of_working_space, workers);

@@ -33,8 +33,9 @@ struct FileOutput {
 /// the default one: "varve.fg.count", "varve.left.motion.x".
 std::string aov_channel(const Aov& aov, const Subject& subject, bool several_layers, std::string_view component);
 
-/// The source's parts with the resolved color in place. With `keep`, other channels stand beside it and parts without a
-/// subject are copied; without, only resolved channels are written. `aovs` are added to each subject's part.
+/// The source's parts with the resolved color and its companions in place. With `keep`, other channels stand beside
+/// them and parts without any are copied; without, only resolved channels are written. `aovs` are added to each
+/// subject's part.
 FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
                           const std::vector<ResolvedSubject>& subjects, const std::vector<const Aov*>& aovs, bool keep,
                           const ColorConversion* out_of_working_space, Workers& workers);
