@@ -86,6 +86,11 @@ class Planner {
     if (!two_sided && !output_.spill_folder.empty())
       throw Failure(ExitCode::usage, "--spill keeps the future of --accumulator two-sided; leave it out");
     if (!two_sided) return;
+    for (const Subject& subject : info_.first.subjects)
+      if (!subject.companions.empty())
+        throw Failure(ExitCode::usage,
+                      "--channels are not resolved by --accumulator two-sided; leave them out, or give --accumulator "
+                      "recursive");
     plan_.use_forward = true;
     const auto inverts = [](const Subject& s) { return has_motion(s) && !(s.backward && s.forward); };
     const std::size_t inverted = count_if(info_, inverts);
@@ -267,8 +272,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   check_possible(info, parameters);
   Plan plan;
   Planner planner(info, parameters, output, plan);
-  if (parameters.accumulator == Accumulator::gather)
-    plan.use_depth = plan.use_id = plan.use_forward = true;
+  if (parameters.accumulator == Accumulator::gather) plan.use_depth = plan.use_id = plan.use_forward = true;
   planner.add("read", true, "");
   planner.add("sanitize", true, "pixels that are not finite are kept from spreading");
   planner.motion();
