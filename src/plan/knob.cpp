@@ -144,8 +144,10 @@ std::vector<Knob> knobs() {
        word(
            [](auto& p) -> auto& { return p.two_sided.clip_discount; }, kDiscounts)},
       {"return-tolerance", "PIXELS", sides, expert,
-       "How far a vector and the vector that leads back may miss each other, besides a "
-       "hundredth of their lengths, before the pixel restarts. 0: no test. Needs vectors in both directions.",
+       "How far a vector and the vector that leads back may miss each other, besides a hundredth of their lengths; "
+       "beyond that the surface is hidden there, and the pixel follows a neighbor or restarts. 0: no test. Needs "
+       "vectors "
+       "in both directions.",
        number([](auto& p) -> auto& { return p.two_sided.return_tolerance; }, {0, 1000})},
       {"reach", "FRAMES", around, basic,
        "Frames on each side of the resolved one that take part. More frames, less noise and aliasing; cost grows with "

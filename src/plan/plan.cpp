@@ -97,7 +97,8 @@ class Planner {
     const bool depth = std::any_of(info_.first.subjects.begin(), info_.first.subjects.end(),
                                    [&](const Subject& s) { return inverts(s) && s.depth; });
     if (depth) plan_.use_depth = true;
-    plan_.passes.push_back(motion_of_both_sides(count_if(info_, has_motion) > 0, inverted > 0, depth, share(inverted)));
+    plan_.passes.push_back(motion_of_both_sides(count_if(info_, has_motion) > 0, inverted > 0, depth,
+                                                parameters_.two_sided.return_tolerance > 0, share(inverted)));
     plan_.passes.push_back(past_and_future(parameters_, output_));
   }
 
