@@ -134,6 +134,23 @@ std::vector<Knob> knobs() {
        word(
            [](auto& p) -> auto& { return p.recursive.sample_filter; }, kSampleFilters)},
 
+      {"look-ahead", "FRAMES", sides, advanced,
+       "Frames that are looked at, at least, before and after each one; also the length of the blocks they are worked "
+       "in. "
+       "0 takes as many as hold 99 % of the weight: 44 at --alpha 0.1.",
+       number([](auto& p) -> auto& { return p.two_sided.look_ahead; }, {0, 10000})},
+      {"clip-discount", "WORD", sides, advanced,
+       "Whether past or future lose weight where rectification moved them: by the square "
+       "of the distance over the variance of the neighbors.",
+       word(
+           [](auto& p) -> auto& { return p.two_sided.clip_discount; }, kDiscounts)},
+      {"return-tolerance", "PIXELS", sides, expert,
+       "How far a vector and the vector that leads back may miss each other, besides a hundredth of their lengths; "
+       "beyond that the surface is hidden there, and the pixel follows a neighbor or restarts. 0: no test. Needs "
+       "vectors "
+       "in both directions.",
+       number([](auto& p) -> auto& { return p.two_sided.return_tolerance; }, {0, 1000})},
+
       {"reach", "FRAMES", around, basic,
        "Frames on each side of the resolved one that take part. More frames, less noise and aliasing; cost grows with "
        "them.",
@@ -157,21 +174,6 @@ std::vector<Knob> knobs() {
        "Relative change of light at which a frame counts half. Small values leave out frames of other light, large "
        "ones trust the gain.",
        number([](auto& p) -> auto& { return p.gather.gain_weight; }, {0, 1000, true})},
-
-      {"look-ahead", "FRAMES", sides, advanced,
-       "Frames that are looked at, at least, before and after each one; also the length of the blocks they are worked "
-       "in. "
-       "0 takes as many as hold 99 % of the weight: 44 at --alpha 0.1.",
-       number([](auto& p) -> auto& { return p.two_sided.look_ahead; }, {0, 10000})},
-      {"clip-discount", "WORD", sides, advanced,
-       "Whether past or future lose weight where rectification moved them: by the square "
-       "of the distance over the variance of the neighbors.",
-       word(
-           [](auto& p) -> auto& { return p.two_sided.clip_discount; }, kDiscounts)},
-      {"return-tolerance", "PIXELS", sides, expert,
-       "How far a vector and the vector that leads back may miss each other, besides a "
-       "hundredth of their lengths, before the pixel restarts. 0: no test. Needs vectors in both directions.",
-       number([](auto& p) -> auto& { return p.two_sided.return_tolerance; }, {0, 1000})},
 
       {"box", "WORD", rectify, advanced, "The colors that history may have, made from the neighbors of the present.",
        word(

@@ -97,13 +97,19 @@ class Planner {
   void sides() {
     const bool two_sided = parameters_.accumulator == Accumulator::two_sided;
     if (!two_sided) return refuse_spill();
+    for (const Subject& subject : info_.first.subjects)
+      if (!subject.companions.empty())
+        throw Failure(ExitCode::usage,
+                      "--channels are not resolved by --accumulator two-sided; leave them out, or give --accumulator "
+                      "recursive");
     plan_.use_forward = true;
     const auto inverts = [](const Subject& s) { return has_motion(s) && !(s.backward && s.forward); };
     const std::size_t inverted = count_if(info_, inverts);
     const bool depth = std::any_of(info_.first.subjects.begin(), info_.first.subjects.end(),
                                    [&](const Subject& s) { return inverts(s) && s.depth; });
     if (depth) plan_.use_depth = true;
-    plan_.passes.push_back(motion_of_both_sides(count_if(info_, has_motion) > 0, inverted > 0, depth, share(inverted)));
+    plan_.passes.push_back(motion_of_both_sides(count_if(info_, has_motion) > 0, inverted > 0, depth,
+                                                parameters_.two_sided.return_tolerance > 0, share(inverted)));
     plan_.passes.push_back(past_and_future(parameters_, output_));
   }
 

@@ -13,7 +13,7 @@ constexpr Preset kPresets[] = {
      "Variance clipping: sharp history along the longest vector, held to the noise of the present.",
      "accumulator=recursive dilation=longest alpha=0.1 alpha-rule=mean history-filter=catmull-rom dering=on "
      "disocclusion=window "
-     "sample-filter=none look-ahead=0 clip-discount=on return-tolerance=0 "
+     "sample-filter=none look-ahead=0 clip-discount=on return-tolerance=0.5 "
      "box=variance gamma=1 window=3 rule=clip anchor=present space=rgb"},
 };
 

@@ -120,7 +120,8 @@ Side merge(const Side& one, const Side& other, const glm::dvec4& present, double
   const auto pull = [&](const Side& side) {
     return side.total > 0 ? (side.color - middle) * side.total : glm::dvec4(0.0);
   };
-  const auto share2 = [&](const Side& side) { return side.total * side.total * side.spread; };
+  // A side that says nothing has neither a color nor a spread.
+  const auto share2 = [&](const Side& side) { return side.total > 0 ? side.total * side.total * side.spread : 0.0; };
   return {middle + (pull(one) + pull(other)) / total, total, ((share2(one) + share2(other)) + w * w) / (total * total)};
 }
 

@@ -14,8 +14,9 @@ struct TwoSidedParameters {
   /// A side that had to be moved by d into the box weighs W / (1 + W d^2 / r), r the local variance of one sample: the
   /// variance r / W it had, and the bias d it showed.
   bool clip_discount = true;
-  int look_ahead = 0;           ///< frames; 0: as many as hold 99 % of a side's weight
-  double return_tolerance = 0;  ///< px, besides a hundredth of the lengths: how far there and back may miss; 0: no test
+  int look_ahead = 0;  ///< frames; 0: as many as hold 99 % of a side's weight
+  double return_tolerance =
+      0.5;  ///< px, besides a hundredth of the lengths: how far there and back may miss; 0: no test
 };
 
 /// Frames that a side reaches at least: those that hold 99 % of its weight, ln(.01) / ln(1 - alpha), or what was asked.

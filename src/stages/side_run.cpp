@@ -58,11 +58,10 @@ DilatedMotion motion_to(Side side, const FrameVectors& here, const FrameVectors*
       motion =
           invert_motion(back, neighbor->depth, here.depth, parameters.recursive.depth_tolerance, std::move(motion));
   }
-  DilatedMotion dilated =
-      dilate_motion(std::move(motion), here.depth, parameters.motion.dilation, workers, std::move(marks));
+  // Before dilation: what leads nowhere may follow a neighbor that does not.
   const double tolerance = parameters.two_sided.return_tolerance;
-  if (tolerance > 0 && !back.empty()) reject_one_way_motion(dilated.motion, back, tolerance, workers);
-  return dilated;
+  if (tolerance > 0 && !back.empty()) reject_one_way_motion(motion, back, tolerance, workers);
+  return dilate_motion(std::move(motion), here.depth, parameters.motion.dilation, workers, std::move(marks));
 }
 
 std::vector<StrictSide> pass_frame(SideRun& run, SourceFrame& source, const SharedVectors& vectors,

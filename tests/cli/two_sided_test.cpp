@@ -67,7 +67,8 @@ TEST_F(TwoSidedCli, AnyPartOfTheSequenceResolvesToTheSameBytes) {
       const std::vector<std::string> names = files_below(folder / ("part" + part));
       ASSERT_FALSE(names.empty());
       for (const std::string& name : names)
-        EXPECT_EQ(bytes_of(folder / ("part" + part + "/" + name)), bytes_of(folder / ("whole/" + name))) << name;
+        EXPECT_TRUE(bytes_of(folder / ("part" + part + "/" + name)) == bytes_of(folder / ("whole/" + name)))
+            << part << " " << name;
     }
   }
 }
@@ -88,8 +89,8 @@ TEST_F(TwoSidedCli, ThreadsSpillAndResumeChangeNoByte) {
   const Outcome resumed = resolve("crossing", "spilled", with({"--resume"}));
   EXPECT_NE(resumed.err.find("8 complete already"), std::string::npos) << resumed.err;
   for (int frame = 1; frame <= 9; ++frame) {
-    EXPECT_EQ(bytes("one", frame), bytes("three", frame)) << frame;
-    EXPECT_EQ(bytes("one", frame), bytes("spilled", frame)) << frame;
+    EXPECT_TRUE(bytes("one", frame) == bytes("three", frame)) << frame;
+    EXPECT_TRUE(bytes("one", frame) == bytes("spilled", frame)) << frame;
   }
 }
 
@@ -169,7 +170,7 @@ TEST_F(TwoSidedCli, NothingCrossesACutOrAGap) {
       resolve("cut", "second", {"--aov", "count-past,count-future,reject,reject-future", "--cuts", "25", "-f", "25-30"})
           .code,
       0);
-  for (int frame = 25; frame <= 30; ++frame) EXPECT_EQ(bytes("cut", frame), bytes("second", frame));
+  for (int frame = 25; frame <= 30; ++frame) EXPECT_TRUE(bytes("cut", frame) == bytes("second", frame));
   fs::remove(folder / "in/cut.0022.exr");
   const Outcome gap = resolve("cut", "gap", counts);
   EXPECT_EQ(gap.code, 0) << gap.err;
