@@ -176,6 +176,10 @@ Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHead
   report.not_finite += r.present.not_finite;
   report.restarted += r.accumulated.counts.restarted;
   report.clipped += r.accumulated.counts.clipped;
+  if (!r.present.companions.empty()) {
+    report.companions_not_finite += r.present.companions_not_finite;
+    report.lights = report.lights + measure_light_sum(r.present, r.accumulated.history, workers);
+  }
   return r;
 }
 

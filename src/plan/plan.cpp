@@ -164,6 +164,19 @@ class Planner {
             : "the present weighs 1/n for n frames seen, at least " + short_number(r.alpha));
   }
 
+  void companions() {
+    std::size_t channels = 0;
+    for (const Subject& subject : info_.first.subjects)
+      for (const Companion& companion : subject.companions)
+        channels += std::size_t(std::count_if(companion.channels.begin(), companion.channels.end(),
+                                              [](const auto& channel) { return channel.has_value(); }));
+    add("companions", channels > 0,
+        channels == 0 ? "no channels go by the weights of a color; --channels names some"
+                      : std::to_string(channels) +
+                            " channels go by the weights of their color: the same pixels of the history, moved as far, "
+                            "blended alike; lights that add up to the color still do, and each frame reports how well");
+  }
+
   void outputs() {
     std::string names;
     for (const std::string& name : output_.aovs) {
@@ -226,6 +239,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   planner.sample_weights();
   planner.rectify();
   planner.blend();
+  planner.companions();
   planner.outputs();
   planner.channels();
   std::size_t present = 0;

@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "resolve/accumulate_companions.h"
 #include "resolve/accumulate_row.h"
 #include "resolve/sample_weights.h"
 
@@ -162,7 +163,7 @@ void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const
   v.gamma = rectify.gamma;
 }
 
-AccumulateCounts run_rows(const AccumulateView& v, Isa isa, Workers& workers) {
+AccumulateCounts run_rows(const AccumulateView& v, const CompanionPass& companions, Isa isa, Workers& workers) {
   const RowKernel kernel = kernel_for(isa);
   std::vector<Scratch> scratch;
   for (int i = 0; i < workers.count(); ++i) scratch.emplace_back(v.width);
@@ -175,6 +176,7 @@ AccumulateCounts run_rows(const AccumulateView& v, Isa isa, Workers& workers) {
       kernel.fetch_history(v, y, rows);
       kernel.rectify_history(v, y, rows, counts[std::size_t(worker)]);
       kernel.blend_present(v, y, rows, counts[std::size_t(worker)]);
+      if (!companions.empty()) accumulate_companions(v, y, rows, companions);
     }
   });
   AccumulateCounts sum;
@@ -196,10 +198,16 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
   AccumulateView v{};
   const PresentView made = view_present(v, present, rectify, recursive.sample_filter, jitter, workers);
   view_history(v, present, previous, recursive.disocclusion);
-  view_output(v, out, wanted);
+  // Companions are blended by the weight of the color.
+  DiagnosticsWanted planes = wanted;
+  planes.weight = wanted.weight || !present.companions.empty();
+  view_output(v, out, planes);
   view_choices(v, recursive, rectify);
   v.restart_bit = restart_bit;
-  out.counts = run_rows(v, isa, workers);
+  const CompanionPass companions =
+      view_companions(v, present, previous, recursive.sample_filter, jitter, out.history, workers);
+  out.counts = run_rows(v, companions, isa, workers);
+  if (!wanted.weight) out.diagnostics.weight = {};
   if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty())
     out.history.depth = present.depth.clone();
   return out;
@@ -216,7 +224,7 @@ History predict(const Present& present, const History& previous, const Recursive
   view_choices(v, recursive, rectify);
   v.anchor = BoxAnchor::mean;
   v.leave_present_out = true;
-  run_rows(v, Isa::automatic, workers);
+  run_rows(v, {}, Isa::automatic, workers);
   return std::move(out.history);
 }
 
