@@ -156,10 +156,6 @@ Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHead
   const Part& part = headers.files.front().parts[std::size_t(part_of(subject))];
   const Parameters& parameters = s.job.parameters;
   if (scheduled.restart) state = {};
-  if (!subject.companions.empty())
-    throw Failure(
-        ExitCode::inconsistent,
-        "the recursive accumulator resolves --channels by their own weights only; give --channel-weights own");
   Resolved r;
   r.present = read_present(
       subject, pixels, part.data_window, part.display_window, {parameters.motion, s.plan.use_depth, s.plan.use_motion},
