@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "json.h"
 
@@ -28,6 +29,13 @@ int terminal_columns() {
 }
 
 std::string count_text(std::size_t count, const char* what) { return ", " + std::to_string(count) + " " + what; }
+
+// Lights of which a part only was named say nothing by their sum.
+bool add_up(const LightSum& lights) { return lights.pixels > 0 && lights.adding_up == lights.pixels; }
+
+double residual(const LightSum& lights, double value) {
+  return add_up(lights) ? value : std::numeric_limits<double>::quiet_NaN();  // null in JSON
+}
 
 std::string residual_text(const LightSum& lights) {
   char text[120];
@@ -53,8 +61,8 @@ JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
       .number("companions_not_finite", double(report.companions_not_finite))
       .number("light_pixels", double(report.lights.pixels))
       .number("light_pixels_adding_up", double(report.lights.adding_up))
-      .number("light_residual_input", report.lights.input)
-      .number("light_residual", report.lights.resolved)
+      .number("light_residual_input", residual(report.lights, report.lights.input))
+      .number("light_residual", residual(report.lights, report.lights.resolved))
       .text("restart", report.restart);
 }
 
@@ -82,7 +90,7 @@ std::string frame_line(const FrameReport& report, int done, int total) {
     if (report.not_finite > 0) line += count_text(report.not_finite, "pixels repaired that were not finite");
     if (report.companions_not_finite > 0)
       line += count_text(report.companions_not_finite, "values of --channels repaired that were not finite");
-    if (report.lights.adding_up > 0) line += residual_text(report.lights);
+    if (add_up(report.lights)) line += residual_text(report.lights);
     if (report.vectors_bad > 0) line += count_text(report.vectors_bad, "unusable vectors");
     if (report.half_overflows > 0) line += count_text(report.half_overflows, "values beyond half held at 65504");
   }

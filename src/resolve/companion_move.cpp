@@ -42,16 +42,18 @@ glm::dvec4 mean_around(const AccumulateView& v, const CompanionRows& plane, int 
   return n > 0 ? centre + sum / double(n) : present;
 }
 
+/// The history of a plane. Lights are held where the color was, as far as it was, since only that keeps their sum;
+/// what has no sum to keep (values that stand alone, alpha) is held between its own nearest pixels.
 glm::dvec4 fetched(const AccumulateView& v, const CompanionMove& move, const CompanionRows& plane, int x, int y) {
   const CompanionTaps& t = move.taps;
   if (!t.found || !plane.history.origin) return pixel_of(plane.present, x, y);
   if (!t.wide) return inner_mean(t, plane);
-  const glm::dvec4 value = wide_mean(t, plane);
-  if (move.hold == glm::dvec4(0.0)) return value;
-  glm::dvec4 hold = move.hold;
-  if (!plane.color) hold = glm::dvec4((hold[0] + hold[1] + hold[2]) / 3);
-  (void)v;
-  return value + (inner_mean(t, plane) - value) * hold;
+  glm::dvec4 value = wide_mean(t, plane);
+  const glm::dvec4 held = held_by_nearest4(t, plane, value);
+  if (!plane.color) return v.dering ? held : value;
+  if (move.hold != glm::dvec3(0.0)) value += (inner_mean(t, plane) - value) * glm::dvec4(move.hold, 0.0);
+  value.a = held.a;
+  return value;
 }
 
 /// The color before and after, and what it may have been moved towards; all in the space of the box.
@@ -86,11 +88,13 @@ bool find_common(const Before& b, BoxAnchor anchor, CompanionMove& move) {
       continue;
     }
     const double at_low = (low - b.from[k]) / step, at_high = (high - b.from[k]) / step;
-    least = std::max(least, std::min(at_low, at_high));
-    most = std::min(most, std::max(at_low, at_high));
+    // Far beyond a short step, the step's own rounding is what counts.
+    const double give = kRounding * std::max(std::abs(b.from[k]), std::abs(b.to[k])) / std::abs(step);
+    least = std::max(least, std::min(at_low, at_high) * (1 - give));
+    most = std::min(most, std::max(at_low, at_high) * (1 + give));
   }
   if (!(least <= most) || !std::isfinite(least)) return false;
-  const double wanted = along > 0 ? length / along : least;
+  const double wanted = along > 0 ? length / along : most;  // away from the anchor: as short a way as will do
   const double stretch = std::clamp(wanted, least, most);
   if (!std::isfinite(stretch)) return false;
   for (int k = 0; k < 3; ++k) {

@@ -8,6 +8,7 @@
 // proportion to what each channel has.
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "resolve/accumulate_row.h"
@@ -35,7 +36,7 @@ struct CompanionTaps {
 /// Channel 3 is alpha. In YCoCg the first three are Y, Co and Cg.
 struct CompanionMove {
   CompanionTaps taps;
-  glm::dvec4 hold{0.0};  ///< part of the way from the filtered history to the mean of the four nearest pixels
+  glm::dvec3 hold{0.0};  ///< part of the way from the filtered history to the mean of the four nearest pixels
   bool moved = false;    ///< the two below are not all 0
   bool needs_mean = false;
   glm::dvec4 toward{0.0};   ///< part of the way from history to its target

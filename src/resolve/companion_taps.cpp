@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <glm/common.hpp>
+
 #include "resolve/companion_taps.h"
 
 namespace varve {
@@ -103,25 +105,25 @@ glm::dvec4 inner_mean(const CompanionTaps& t, const CompanionRows& plane) {
   return nearest + sum;
 }
 
-glm::dvec4 hold_of(const AccumulateView& v, const CompanionTaps& t, const CompanionRows& color) {
-  glm::dvec4 hold(0.0);
-  if (!t.wide) return hold;
-  const glm::dvec4 filtered = wide_mean(t, color), mean = inner_mean(t, color);
-  glm::dvec4 low = pixel_of(color.history, t.x, t.y), high = low;
+glm::dvec4 held_by_nearest4(const CompanionTaps& t, const CompanionRows& plane, const glm::dvec4& value) {
+  glm::dvec4 low = pixel_of(plane.history, t.x, t.y), high = low;
   for (int tap = 1; tap < 4; ++tap) {
-    const glm::dvec4 c = pixel_of(color.history, t.x + (tap & 1), t.y + (tap >> 1));
-    for (int k = 0; k < 4; ++k) {
-      low[k] = c[k] < low[k] ? c[k] : low[k];
-      high[k] = c[k] > high[k] ? c[k] : high[k];
-    }
+    const glm::dvec4 c = pixel_of(plane.history, t.x + (tap & 1), t.y + (tap >> 1));
+    low = glm::min(low, c);
+    high = glm::max(high, c);
   }
+  return glm::min(glm::max(value, low), high);
+}
+
+glm::dvec3 hold_of(const AccumulateView& v, const CompanionTaps& t, const CompanionRows& color) {
+  glm::dvec3 hold(0.0);
+  if (!t.wide || !v.dering) return hold;
+  const glm::dvec4 filtered = wide_mean(t, color), mean = inner_mean(t, color);
+  const glm::dvec4 held = held_by_nearest4(t, color, filtered);
   // The mean lies between the least and the greatest: what is held lies between the filter's value and the mean.
-  for (int k = 0; k < 4; ++k) {
-    if (!v.dering && k < 3) continue;
-    const double held = filtered[k] < low[k] ? low[k] : filtered[k] > high[k] ? high[k] : filtered[k];
-    if (held != filtered[k] && mean[k] != filtered[k]) hold[k] = (held - filtered[k]) / (mean[k] - filtered[k]);
-    hold[k] = hold[k] > 1 ? 1 : hold[k];
-  }
+  for (int k = 0; k < 3; ++k)
+    if (held[k] != filtered[k] && mean[k] != filtered[k])
+      hold[k] = glm::min(1.0, (held[k] - filtered[k]) / (mean[k] - filtered[k]));
   return hold;
 }
 

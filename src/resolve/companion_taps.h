@@ -12,8 +12,11 @@ CompanionTaps find_taps(const AccumulateView& view, int x, int y);
 glm::dvec4 wide_mean(const CompanionTaps& taps, const CompanionRows& plane);
 glm::dvec4 inner_mean(const CompanionTaps& taps, const CompanionRows& plane);
 
+/// Between the least and the greatest of the four nearest pixels of the plane itself.
+glm::dvec4 held_by_nearest4(const CompanionTaps& taps, const CompanionRows& plane, const glm::dvec4& value);
+
 /// How far the color's fetch went from the wide filter's value to the mean of the nearest four, to hold it between
 /// them.
-glm::dvec4 hold_of(const AccumulateView& view, const CompanionTaps& taps, const CompanionRows& color);
+glm::dvec3 hold_of(const AccumulateView& view, const CompanionTaps& taps, const CompanionRows& color);
 
 }  // namespace varve
