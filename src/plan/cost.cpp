@@ -22,7 +22,8 @@ constexpr CodecCost kNone{0.2, 0.9}, kLight{1.5, 3}, kZip{1.9, 6}, kPiz{5, 11}, 
 // Nanoseconds per pixel and pass, one thread with AVX2, as tests/bench/passes_bench prints them; inversion of forward
 // vectors, depth test and diagnostics are set by their traffic and not measured yet.
 constexpr double kConvert = 1.5, kSanitize = 1.6, kMotion = 1.1, kInvert = 12, kDilate = 8.5, kHistory = 22,
-                 kDepthTest = 1, kSampleWeights = 20, kBox = 28, kBlend = 8, kDiagnostic = 0.5;
+                 kDepthTest = 1, kSampleWeights = 20, kBox = 28, kBlend = 8, kDiagnostic = 0.5, kCompanionMove = 250,
+                 kCompanion = 140;
 
 CodecCost cost_of(Compression compression) {
   switch (compression) {
@@ -155,7 +156,9 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
   if (parameters.rectify.box != Box::none) per_pixel += kBox * std::max(1, parameters.rectify.window) / 3;
   for (const Subject& subject : info.first.subjects) {
     const double motion = !plan.use_motion ? 0 : subject.backward ? kMotion : subject.forward ? kMotion + kInvert : 0;
-    nanoseconds += double(pixels_of(info, subject)) * (per_pixel + motion);
+    const std::size_t planes = subject.companions.size();
+    const double companions = planes == 0 ? 0 : kCompanionMove + double(planes) * (kCompanion + kConvert + kSanitize);
+    nanoseconds += double(pixels_of(info, subject)) * (per_pixel + motion + companions);
   }
   return nanoseconds * 1e-9 / std::max(1, threads);
 }

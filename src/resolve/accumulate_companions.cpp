@@ -72,13 +72,12 @@ void accumulate_companions(const AccumulateView& v, int y, const RowScratch& s, 
     const float* result = v.out_color.origin + y * v.out_color.stride + 4 * x;
     const double a = has_history ? 1 - double(v.out_weight.origin[y * v.out_weight.stride + x]) : 0;
     const CompanionMove move = find_move(v, pass.color, x, y, has_history, has_history ? s.history + 4 * x : result);
-    const auto blended = [&](const CompanionRows& plane) {
-      const glm::dvec4 history = apply_move(v, move, plane, x, y);
+    const auto blended = [&](const CompanionRows& plane, const glm::dvec4& history) {
       return history + (pixel_of(plane.present, x, y) - history) * a;
     };
-    const glm::dvec4 rest = rest_of(blended(pass.color), result);
+    const glm::dvec4 rest = rest_of(blended(pass.color, move.value), result);
     for (std::size_t i = 0; i < pass.planes.size(); ++i) {
-      const glm::dvec4 value = blended(pass.planes[i]);
+      const glm::dvec4 value = blended(pass.planes[i], apply_move(v, move, pass.planes[i], x, y));
       store(pass.out[i], x, y, pass.planes[i].color ? value + value * rest : value);
     }
   }

@@ -32,14 +32,16 @@ glm::dvec4 mean_around(const AccumulateView& v, const CompanionRows& plane, int 
   const int r = std::clamp(v.radius, 1, kMostRadius);
   const glm::dvec4 centre = pixel_of(plane.neighbors, x, y);
   glm::dvec4 sum(0.0);
-  int n = 0;
-  for (int j = -r; j <= r; ++j)
-    for (int i = -r; i <= r; ++i)
-      if (v.weight.origin[(y + j) * v.weight.stride + x + i] > 0) {
-        sum += pixel_of(plane.neighbors, x + i, y + j) - centre;
-        ++n;
-      }
-  return n > 0 ? centre + sum / double(n) : present;
+  double n = 0;
+  for (int j = -r; j <= r; ++j) {
+    const float* weight = v.weight.origin + (y + j) * v.weight.stride + x;
+    for (int i = -r; i <= r; ++i) {
+      const double w = weight[i] > 0 ? 1 : 0;
+      sum += (pixel_of(plane.neighbors, x + i, y + j) - centre) * w;
+      n += w;
+    }
+  }
+  return n > 0 ? centre + sum / n : present;
 }
 
 /// The history of a plane. Lights are held where the color was, as far as it was, since only that keeps their sum;
@@ -51,7 +53,7 @@ glm::dvec4 fetched(const AccumulateView& v, const CompanionMove& move, const Com
   glm::dvec4 value = wide_mean(t, plane);
   const glm::dvec4 held = held_by_nearest4(t, plane, value);
   if (!plane.color) return v.dering ? held : value;
-  if (move.hold != glm::dvec3(0.0)) value += (inner_mean(t, plane) - value) * glm::dvec4(move.hold, 0.0);
+  if (t.holds) value += (inner_mean(t, plane) - value) * glm::dvec4(t.hold, 0.0);
   value.a = held.a;
   return value;
 }
@@ -137,26 +139,27 @@ void find_direction(const AccumulateView& v, const Before& b, CompanionMove& mov
   }
 }
 
+/// From the history to where the color's history was moved; `mean` is looked at only where it is needed.
+glm::dvec4 moved(const AccumulateView& v, const CompanionMove& move, bool color, const glm::dvec4& history,
+                 const glm::dvec4& present, const glm::dvec4& mean) {
+  if (!move.moved) return history;
+  if (color) {
+    const glm::dvec4 from = rotate(v.space, history), now = rotate(v.space, present);
+    const glm::dvec4 target = now + move.of_mean * (rotate(v.space, mean) - now);
+    return rotate_back(v.space, from + move.toward * (target - from));
+  }
+  // Luma, or the mean of the three: a value that stands alone has no hue.
+  const bool luma = v.space == BoxSpace::ycocg;
+  const auto of = [&](const glm::dvec4& c) { return luma ? c[0] : (c[0] + c[1] + c[2]) / 3; };
+  return history + of(move.toward) * (present + of(move.of_mean) * (mean - present) - history);
+}
+
 }  // namespace
 
 glm::dvec4 apply_move(const AccumulateView& v, const CompanionMove& move, const CompanionRows& plane, int x, int y) {
-  glm::dvec4 value = fetched(v, move, plane, x, y);
-  if (move.moved) {
-    glm::dvec4 present = pixel_of(plane.present, x, y);
-    glm::dvec4 mean = move.needs_mean ? mean_around(v, plane, x, y, present) : present;
-    if (plane.color) {
-      const glm::dvec4 from = rotate(v.space, value);
-      present = rotate(v.space, present);
-      mean = rotate(v.space, mean);
-      value = rotate_back(v.space, from + move.toward * (present + move.of_mean * (mean - present) - from));
-    } else {
-      // Luma, or the mean of the three: a value that stands alone has no hue.
-      const bool luma = v.space == BoxSpace::ycocg;
-      const auto of = [&](const glm::dvec4& c) { return luma ? c[0] : (c[0] + c[1] + c[2]) / 3; };
-      const double toward = of(move.toward), of_mean = of(move.of_mean);
-      value += toward * (present + of_mean * (mean - present) - value);
-    }
-  }
+  const glm::dvec4 history = fetched(v, move, plane, x, y), present = pixel_of(plane.present, x, y);
+  const glm::dvec4 mean = move.needs_mean ? mean_around(v, plane, x, y, present) : present;
+  const glm::dvec4 value = moved(v, move, plane.color, history, present, mean);
   return plane.color ? value + value * move.rest : value;
 }
 
@@ -164,22 +167,25 @@ CompanionMove find_move(const AccumulateView& v, const CompanionRows& color, int
                         const float* result) {
   CompanionMove move;
   if (has_history && color.history.origin) move.taps = find_taps(v, x, y);
-  if (move.taps.found) move.hold = hold_of(v, move.taps, color);
-  const glm::dvec4 from = fetched(v, move, color, x, y), to(result[0], result[1], result[2], result[3]);
-  const glm::dvec4 present = pixel_of(color.present, x, y);
+  const glm::dvec4 present = pixel_of(color.present, x, y), to(result[0], result[1], result[2], result[3]);
+  const glm::dvec4 from = move.taps.wide    ? held_as_color(v, move.taps, color)
+                          : move.taps.found ? inner_mean(move.taps, color)
+                                            : present;
+  glm::dvec4 mean = present;
   Before b{from, to, present, present};
   bool still = true;
   for (int k = 0; k < 4; ++k) still = still && is_rounding(b, k);
   if (!still) {
-    b = {rotate(v.space, from), rotate(v.space, to), rotate(v.space, present),
-         rotate(v.space, mean_around(v, color, x, y, present))};
+    mean = mean_around(v, color, x, y, present);
+    b = {rotate(v.space, from), rotate(v.space, to), rotate(v.space, present), rotate(v.space, mean)};
     find_direction(v, b, move);
   }
-  const glm::dvec4 value = apply_move(v, move, color, x, y);
+  const glm::dvec4 value = moved(v, move, true, from, present, mean);
   for (int k = 0; k < 4; ++k) {
     const double rest = value[k] != 0 ? (to[k] - value[k]) / value[k] : 0;
     if (std::abs(rest) <= kMostRest) move.rest[k] = rest;
   }
+  move.value = value + value * move.rest;
   return move;
 }
 

@@ -25,22 +25,24 @@ struct CompanionRows {
 
 /// Pixels of the history that a value is made from, and their weights.
 struct CompanionTaps {
-  bool found = false;                ///< false: the present stands in
-  bool wide = false;                 ///< sixteen pixels; else the inner four only
-  int x = 0, y = 0;                  ///< the pixel at or below the position
-  double weight[4][4] = {};          ///< rows y-1..y+2, columns x-1..x+2; sum 1
-  double inner[2][2] = {};           ///< the mean of the four nearest, which holds ringing
+  bool found = false;        ///< false: the present stands in
+  bool wide = false;         ///< sixteen pixels; else the inner four only
+  int x = 0, y = 0;          ///< the pixel at or below the position
+  double weight[4][4] = {};  ///< rows y-1..y+2, columns x-1..x+2; sum 1
+  double inner[2][2] = {};   ///< the mean of the four nearest, which holds ringing
+  bool holds = false;        ///< hold is not 0
+  glm::dvec3 hold{0.0};      ///< part of the way from the wide filter's value to the inner mean, against ringing
   int nearest_x = 0, nearest_y = 0;  ///< what differences are taken to, so that a constant stays that constant
 };
 
 /// Channel 3 is alpha. In YCoCg the first three are Y, Co and Cg.
 struct CompanionMove {
   CompanionTaps taps;
-  glm::dvec3 hold{0.0};  ///< part of the way from the filtered history to the mean of the four nearest pixels
-  bool moved = false;    ///< the two below are not all 0
+  bool moved = false;  ///< the two below are not all 0
   bool needs_mean = false;
   glm::dvec4 toward{0.0};   ///< part of the way from history to its target
   glm::dvec4 of_mean{0.0};  ///< where between present (0) and mean (1) the target lies
+  glm::dvec4 value{0.0};    ///< what became of the color's history
   glm::dvec4 rest{0.0};     ///< what is left, relative to the value
 };
 

@@ -1,6 +1,7 @@
 // Which pixels of the history a companion is made from: those of the color.
 
 #include <cmath>
+#include <cstring>
 
 #include <glm/common.hpp>
 
@@ -8,6 +9,9 @@
 
 namespace varve {
 namespace {
+
+typedef float Float4 __attribute__((vector_size(16)));
+typedef double Double4 __attribute__((vector_size(32)));
 
 /// Catmull-Rom weights of the pixels -1..2 around a fraction.
 void catmull_rom(double f, double (&w)[4]) {
@@ -89,11 +93,19 @@ CompanionTaps find_taps(const AccumulateView& v, int x, int y) {
 }
 
 glm::dvec4 wide_mean(const CompanionTaps& t, const CompanionRows& plane) {
-  const glm::dvec4 nearest = pixel_of(plane.history, t.nearest_x, t.nearest_y);
-  glm::dvec4 sum(0.0);
-  for (int j = 0; j < 4; ++j)
-    for (int i = 0; i < 4; ++i) sum += (pixel_of(plane.history, t.x - 1 + i, t.y - 1 + j) - nearest) * t.weight[j][i];
-  return nearest + sum;
+  const std::ptrdiff_t stride = plane.history.stride;
+  Float4 pixel;
+  std::memcpy(&pixel, plane.history.origin + t.nearest_y * stride + 4 * t.nearest_x, sizeof pixel);
+  const Double4 nearest = __builtin_convertvector(pixel, Double4);
+  const float* row = plane.history.origin + (t.y - 1) * stride + 4 * (t.x - 1);
+  Double4 sum{0, 0, 0, 0};
+  for (int j = 0; j < 4; ++j, row += stride)
+    for (int i = 0; i < 4; ++i) {
+      std::memcpy(&pixel, row + 4 * i, sizeof pixel);
+      sum += (__builtin_convertvector(pixel, Double4) - nearest) * t.weight[j][i];
+    }
+  const Double4 value = nearest + sum;
+  return {value[0], value[1], value[2], value[3]};
 }
 
 glm::dvec4 inner_mean(const CompanionTaps& t, const CompanionRows& plane) {
@@ -115,16 +127,21 @@ glm::dvec4 held_by_nearest4(const CompanionTaps& t, const CompanionRows& plane, 
   return glm::min(glm::max(value, low), high);
 }
 
-glm::dvec3 hold_of(const AccumulateView& v, const CompanionTaps& t, const CompanionRows& color) {
-  glm::dvec3 hold(0.0);
-  if (!t.wide || !v.dering) return hold;
-  const glm::dvec4 filtered = wide_mean(t, color), mean = inner_mean(t, color);
-  const glm::dvec4 held = held_by_nearest4(t, color, filtered);
-  // The mean lies between the least and the greatest: what is held lies between the filter's value and the mean.
-  for (int k = 0; k < 3; ++k)
-    if (held[k] != filtered[k] && mean[k] != filtered[k])
-      hold[k] = glm::min(1.0, (held[k] - filtered[k]) / (mean[k] - filtered[k]));
-  return hold;
+glm::dvec4 held_as_color(const AccumulateView& v, CompanionTaps& t, const CompanionRows& color) {
+  glm::dvec4 value = wide_mean(t, color);
+  const glm::dvec4 held = held_by_nearest4(t, color, value);
+  if (v.dering && held != value) {
+    // The mean lies between the least and the greatest: what is held lies between the filter's value and the mean.
+    const glm::dvec4 mean = inner_mean(t, color);
+    for (int k = 0; k < 3; ++k)
+      if (held[k] != value[k] && mean[k] != value[k]) {
+        t.hold[k] = glm::min(1.0, (held[k] - value[k]) / (mean[k] - value[k]));
+        t.holds = true;
+      }
+    value = held;
+  }
+  value.a = held.a;
+  return value;
 }
 
 }  // namespace varve

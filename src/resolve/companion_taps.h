@@ -15,8 +15,8 @@ glm::dvec4 inner_mean(const CompanionTaps& taps, const CompanionRows& plane);
 /// Between the least and the greatest of the four nearest pixels of the plane itself.
 glm::dvec4 held_by_nearest4(const CompanionTaps& taps, const CompanionRows& plane, const glm::dvec4& value);
 
-/// How far the color's fetch went from the wide filter's value to the mean of the nearest four, to hold it between
-/// them.
-glm::dvec3 hold_of(const AccumulateView& view, const CompanionTaps& taps, const CompanionRows& color);
+/// The color's history by the wide filter, held between its nearest pixels if asked. Notes how far towards their mean
+/// each channel went for that.
+glm::dvec4 held_as_color(const AccumulateView& view, CompanionTaps& taps, const CompanionRows& color);
 
 }  // namespace varve
