@@ -10,8 +10,9 @@ namespace varve::cli {
 Value<Settings> map_value() {
   return {[](Settings& s, std::string_view text) {
             const std::size_t equals = text.find('=');
-            constexpr std::array<std::string_view, 9> roles = {"R",        "G",        "B",         "A",        "depth",
-                                                               "motion.x", "motion.y", "forward.x", "forward.y"};
+            constexpr std::array<std::string_view, 15> roles = {
+                "R",         "G",  "B",        "A",        "depth",    "motion.x", "motion.y",  "forward.x",
+                "forward.y", "id", "normal.x", "normal.y", "normal.z", "reactive", "responsive"};
             if (equals == std::string_view::npos || equals + 1 == text.size()) return false;
             const std::string_view role = text.substr(0, equals);
             if (std::ranges::find(roles, role) == roles.end()) return false;
@@ -19,7 +20,8 @@ Value<Settings> map_value() {
             return true;
           },
           nullptr,
-          "role=channel with one of the roles R, G, B, A, depth, motion.x, motion.y, forward.x, forward.y",
+          "role=channel with one of the roles R, G, B, A, depth, motion.x, motion.y, forward.x, forward.y, "
+          "id, normal.x, normal.y, normal.z, reactive, responsive",
           {}};
 }
 

@@ -14,6 +14,7 @@
 namespace varve {
 
 using VectorChannels = std::array<ChannelRef, 2>;  ///< x, y
+using NormalChannels = std::array<ChannelRef, 3>;  ///< x, y, z
 
 /// Up to four channels that are resolved together with a subject's color, by its motion and its weights.
 struct Companion {
@@ -33,6 +34,9 @@ struct Subject {
       color;  ///< R G B A; a lone channel stands in the place of its name, Y in that of G
   std::vector<Companion> companions;
   std::optional<ChannelRef> depth;
+  std::optional<ChannelRef> id;  ///< object index, or the first rank of a Cryptomatte
+  std::optional<NormalChannels> normal;
+  std::optional<ChannelRef> reactive, responsive;   ///< masks, only as mapped
   std::optional<VectorChannels> backward, forward;  ///< as stored, before decoding
   MotionEncoding backward_encoding, forward_encoding;
   std::string convention;  ///< row of the convention table; "" when no vectors were found
@@ -62,8 +66,9 @@ struct RoleRequest {
   std::vector<std::string> channels;  ///< further layers and channels to resolve, by name or by pattern (* and ?)
   ChannelWeights channel_weights = ChannelWeights::beauty;
   std::vector<std::pair<std::string, std::string>>
-      map;                          ///< role=channel: R G B A depth motion.x motion.y forward.x forward.y;
-                                    ///< full channel names, or part:channel as probe prints them
+      map;                          ///< role=channel: R G B A depth motion.x motion.y forward.x forward.y id normal.x
+                                    ///< normal.y normal.z reactive responsive; full channel names, or part:channel as
+                                    ///< probe prints them
   std::string convention = "auto";  ///< row of the table; auto: told by names, never guessed; none: no vectors are used
   MotionEncoding encoding;          ///< overrides, used where `overrides` says so
   bool override_bias = false, override_scale = false, override_shutter = false, override_sign_x = false,

@@ -2,9 +2,11 @@
 // dilate.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "base/parallel.h"
 #include "base/plane.h"
@@ -44,15 +46,23 @@ void canonical_depth(Plane<float>& depth, DepthKind kind, double background, Wor
 Plane<glm::vec2> invert_forward_motion(const Plane<glm::vec2>& previous_forward, const Plane<float>& previous_depth,
                                        const Plane<glm::vec2>& forward);
 
-/// Chosen vectors, and the depth of the pixel each came from (empty without depth).
+/// What else is known of the surface in a pixel; planes that are not there are empty.
+struct SurfaceMarks {
+  Plane<std::uint32_t> id;
+  Plane<glm::vec3> normal;
+};
+
+/// Chosen vectors, and the depth and marks of the pixel each came from (empty where there are none).
 struct DilatedMotion {
   Plane<glm::vec2> motion;
   Plane<float> depth;
+  SurfaceMarks marks;
 };
 
 /// 3x3 dilation; reads a border of one pixel, neighbors outside the window do not count. Ties go to the pixel itself,
 /// then in reading order. NaN vectors take no part; a pixel whose own vector is NaN takes a neighbor's if there is one.
 /// `nearest` needs a depth; where all is background the pixel keeps its own vector.
-DilatedMotion dilate_motion(Plane<glm::vec2> motion, const Plane<float>& depth, Dilation dilation, Workers& workers);
+DilatedMotion dilate_motion(Plane<glm::vec2> motion, const Plane<float>& depth, Dilation dilation, Workers& workers,
+                            SurfaceMarks marks = {});
 
 }  // namespace varve

@@ -5,6 +5,11 @@
 namespace varve {
 namespace {
 
+constexpr Word<Accumulator> kAccumulators[] = {
+    {"recursive", Accumulator::recursive, "a history that is carried from frame to frame; fast, looks back only"},
+    {"two-sided", Accumulator::two_sided, "past and future histories merged, the present counted once"},
+    {"gather", Accumulator::gather, "every sample of the frames around, carried here along its own motion, used once"},
+};
 constexpr Word<Dilation> kDilations[] = {
     {"none", Dilation::none, "the pixel's own vector"},
     {"nearest", Dilation::nearest, "the vector of the nearest depth among the 3x3 neighbors; needs depth"},
@@ -39,6 +44,10 @@ constexpr Word<SampleFilter> kSampleFilters[] = {
     {"gaussian", SampleFilter::gaussian, "Gaussian"},
     {"blackman-harris", SampleFilter::blackman_harris, "narrow with very low side lobes, the usual film filter"},
     {"mitchell", SampleFilter::mitchell, "Mitchell-Netravali, with negative lobes"},
+};
+constexpr Word<bool> kGains[] = {
+    {"on", true, "samples of other frames follow the light of their surface, and count less where it changed"},
+    {"off", false, "samples are taken as they are"},
 };
 constexpr Word<Box> kBoxes[] = {
     {"none", Box::none, "history is used as it is"},
@@ -79,6 +88,7 @@ Value<Parameters> number(At at, Range range) {
 std::vector<Knob> knobs() {
   constexpr auto basic = Tier::basic, advanced = Tier::advanced, expert = Tier::expert;
   constexpr std::string_view motion = "Motion and depth", history = "History", rectify = "Rectification";
+  constexpr std::string_view around = "Gather";
   return {
       {"dilation", "WORD", motion, advanced, "Whose vector a pixel follows.",
        word(
@@ -90,6 +100,9 @@ std::vector<Knob> knobs() {
        word(
            [](auto& p) -> auto& { return p.motion.depth_kind; }, kDepthKinds)},
 
+      {"accumulator", "WORD", history, basic, "How frames are combined.",
+       word(
+           [](auto& p) -> auto& { return p.accumulator; }, kAccumulators)},
       {"alpha", "WEIGHT", history, basic,
        "Weight of the present frame, the rest is history. Near 0 history decides: steady, slow to follow changes of "
        "light. 1 leaves the present as it is.",
@@ -115,6 +128,30 @@ std::vector<Knob> knobs() {
        "Weights each sample by its true position in the pixel; needs the jitter of the frames.",
        word(
            [](auto& p) -> auto& { return p.recursive.sample_filter; }, kSampleFilters)},
+
+      {"reach", "FRAMES", around, basic,
+       "Frames on each side of the resolved one that take part. More frames, less noise and aliasing; cost grows with "
+       "them.",
+       number([](auto& p) -> auto& { return p.gather.reach; }, {0, 256})},
+      {"cells", "COUNT", around, advanced,
+       "Cells on a pixel's edge. Each cell has the same say in the pixel, however many samples fall into it.",
+       number([](auto& p) -> auto& { return p.gather.cells; }, {1, 8})},
+      {"sigma", "PIXELS", around, expert,
+       "Width of the Gaussian by which a cell weighs the samples around it. Near 0 only the nearest counts; wide ones "
+       "blur. It is widened where there are few frames.",
+       number([](auto& p) -> auto& { return p.gather.sigma; }, {0.01, 2})},
+      {"gain", "WORD", around, advanced, "What is done about light that changes.",
+       word(
+           [](auto& p) -> auto& { return p.gather.gain; }, kGains)},
+      {"gain-window", "PIXELS", around, expert, "Edge of the window, odd, in which light is measured.",
+       number([](auto& p) -> auto& { return p.gather.gain_window; }, {1, 127})},
+      {"gain-dead-zone", "RATIO", around, expert,
+       "Relative change of light that counts as noise. 0 follows every change, noise too.",
+       number([](auto& p) -> auto& { return p.gather.gain_dead_zone; }, {0, 10})},
+      {"gain-weight", "RATIO", around, expert,
+       "Relative change of light at which a frame counts half. Small values leave out frames of other light, large "
+       "ones trust the gain.",
+       number([](auto& p) -> auto& { return p.gather.gain_weight; }, {0, 1000, true})},
 
       {"box", "WORD", rectify, advanced, "The colors that history may have, made from the neighbors of the present.",
        word(

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "gather/gather.h"
 #include "motion/motion.h"
 #include "resolve/accumulate.h"
 
@@ -10,9 +11,11 @@ namespace varve {
 
 struct Parameters {
   std::string preset = "salvi";  ///< where the values came from before the user changed any
+  Accumulator accumulator = Accumulator::recursive;
   MotionParameters motion;
   RecursiveParameters recursive;
   RectifyParameters rectify;
+  GatherParameters gather;
 };
 
 }  // namespace varve

@@ -202,8 +202,14 @@ class Planner {
       for (const Companion& companion : subject.companions)
         for (const std::optional<ChannelRef>& channel : companion.channels) read(channel);
       if (plan_.use_depth) read(subject.depth);
+      if (plan_.use_id) read(subject.id);
+      if (plan_.use_normal && subject.normal)
+        for (const ChannelRef& axis : *subject.normal) read(axis);
+      if (plan_.use_reactive) read(subject.reactive);
+      if (plan_.use_responsive) read(subject.responsive);
       const std::optional<VectorChannels>& vector = subject.backward ? subject.backward : subject.forward;
       if (vector) read((*vector)[0]), read((*vector)[1]);
+      if (plan_.use_forward && subject.forward) read((*subject.forward)[0]), read((*subject.forward)[1]);
     }
     std::sort(plan_.channels.begin(), plan_.channels.end(), [](const ChannelRef& a, const ChannelRef& b) {
       return std::array{a.file, a.part, a.channel} < std::array{b.file, b.part, b.channel};
@@ -231,6 +237,8 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   check_possible(info, parameters);
   Plan plan;
   Planner planner(info, parameters, output, plan);
+  if (parameters.accumulator == Accumulator::gather)
+    plan.use_depth = plan.use_id = plan.use_forward = true;
   planner.add("read", true, "");
   planner.add("sanitize", true, "pixels that are not finite are kept from spreading");
   planner.motion();

@@ -29,9 +29,11 @@ struct Plan {
                                      ///< channels that are only passed through are not among them
   bool use_depth = false;            ///< depth is read and used
   bool use_motion = false;
+  bool use_forward = false;  ///< vectors to the next frame are read where the files have them
   bool use_jitter = false;
-  std::size_t bytes = 0;           ///< peak memory expected
-  double seconds_per_frame = 0;    ///< expected wall time
+  bool use_id = false, use_normal = false, use_reactive = false, use_responsive = false;  ///< read and used
+  std::size_t bytes = 0;                                                                  ///< peak memory expected
+  double seconds_per_frame = 0;                                                           ///< expected wall time
   std::vector<std::string> notes;  ///< assumptions and warnings, a sentence each
 };
 

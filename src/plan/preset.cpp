@@ -11,7 +11,8 @@ namespace {
 constexpr Preset kPresets[] = {
     {"salvi", "Salvi 2016, An Excursion in Temporal Supersampling",
      "Variance clipping: sharp history along the longest vector, held to the noise of the present.",
-     "dilation=longest alpha=0.1 alpha-rule=mean history-filter=catmull-rom dering=on disocclusion=window "
+     "accumulator=recursive dilation=longest alpha=0.1 alpha-rule=mean history-filter=catmull-rom dering=on "
+     "disocclusion=window "
      "sample-filter=none "
      "box=variance gamma=1 window=3 rule=clip anchor=present space=rgb"},
 };

@@ -204,8 +204,15 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
   view_output(v, out, planes);
   view_choices(v, recursive, rectify);
   v.restart_bit = restart_bit;
-  const CompanionPass companions =
-      view_companions(v, present, previous, recursive.sample_filter, jitter, out.history, workers);
+  Reconstruct reconstruct;
+  if (!present.companions.empty() && recursive.sample_filter != SampleFilter::none && jitter)
+    reconstruct = [&](const Plane<glm::vec4>& samples) {
+      Present like;  // the same samples count
+      like.color = samples.clone();
+      like.valid = present.valid.clone();
+      return weigh_samples(like, recursive.sample_filter, *jitter, workers).color;
+    };
+  const CompanionPass companions = view_companions(v, present, previous, reconstruct, out.history);
   out.counts = run_rows(v, companions, isa, workers);
   if (!wanted.weight) out.diagnostics.weight = {};
   if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty())

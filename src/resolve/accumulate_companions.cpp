@@ -16,16 +16,6 @@ bool is_color(const Present& present, std::size_t i) {
   return i >= present.companion_is_color.size() || present.companion_is_color[i] != 0;
 }
 
-/// The samples of a companion, weighed as those of the color: by position, and only where the color is valid.
-WeighedPresent weigh(const Plane<glm::vec4>& plane, const Present& present, SampleFilter filter, glm::dvec2 jitter,
-                     Workers& workers) {
-  Present like;
-  like.color = plane.clone();
-  like.valid = present.valid.clone();
-  like.rows_valid = present.rows_valid;
-  return weigh_samples(like, filter, jitter, workers);
-}
-
 void store(PixelRows<float> out, int x, int y, const glm::dvec4& value) {
   constexpr double most = std::numeric_limits<float>::max();
   float* to = out.origin + y * out.stride + 4 * x;
@@ -45,19 +35,18 @@ glm::dvec4 rest_of(const glm::dvec4& value, const float* result) {
 }  // namespace
 
 CompanionPass view_companions(const AccumulateView& view, const Present& present, const History& previous,
-                              SampleFilter sample_filter, std::optional<glm::dvec2> jitter, History& out,
-                              Workers& workers) {
+                              const Reconstruct& reconstruct, History& out) {
   CompanionPass pass;
   const std::size_t count = present.companions.size();
   if (count == 0) return pass;
-  const bool weigh_them = sample_filter != SampleFilter::none && jitter;
-  pass.weighed.resize(count);
-  pass.color = {rows_of(present.color), view.color, view.history_color, true};
+  pass.reconstructed.resize(count);
+  // The color's own pixels, not what its filter may have made of them to read between.
+  pass.color = {rows_of(present.color), view.color, rows_of(previous.color), true};
   for (std::size_t i = 0; i < count; ++i) {
     const Plane<glm::vec4>& plane = present.companions[i];
-    if (weigh_them) pass.weighed[i] = weigh(plane, present, sample_filter, *jitter, workers);
+    if (reconstruct) pass.reconstructed[i] = reconstruct(plane);
     const bool has_history = !previous.empty() && i < previous.companions.size();
-    pass.planes.push_back({rows_of(plane), rows_of(weigh_them ? pass.weighed[i].color : plane),
+    pass.planes.push_back({rows_of(plane), rows_of(reconstruct ? pass.reconstructed[i] : plane),
                            has_history ? rows_of(previous.companions[i]) : PixelRows<const float>{nullptr, 0},
                            is_color(present, i)});
     Plane<glm::vec4>& to = out.companions.emplace_back(plane.window());

@@ -2,16 +2,15 @@
 // blended by the same weight. Channels that add up to the color still do.
 #pragma once
 
-#include <optional>
+#include <functional>
 #include <vector>
 
-#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 
-#include "base/parallel.h"
+#include "base/plane.h"
 #include "resolve/accumulate.h"
 #include "resolve/accumulate_row.h"
 #include "resolve/companion_move.h"
-#include "resolve/sample_weights.h"
 
 namespace varve {
 
@@ -20,15 +19,17 @@ struct CompanionPass {
   CompanionRows color;                ///< the color itself
   std::vector<CompanionRows> planes;  ///< its companions
   std::vector<PixelRows<float>> out;
-  std::vector<WeighedPresent> weighed;  ///< kept for the rows above
+  std::vector<Plane<glm::vec4>> reconstructed;  ///< kept for the rows above
   bool empty() const { return planes.empty(); }
 };
 
-/// Prepares the pass over present.companions and allocates their planes in `out`. `view` is that of the color. Samples
-/// are weighed by their position where the color's are.
+/// What makes the present of a plane from its samples.
+using Reconstruct = std::function<Plane<glm::vec4>(const Plane<glm::vec4>& samples)>;
+
+/// Prepares the pass over present.companions and allocates their planes in `out`. `view` is that of the color, of which
+/// `reconstruct` must be what its present was made by; empty: the samples are the present.
 CompanionPass view_companions(const AccumulateView& view, const Present& present, const History& previous,
-                              SampleFilter sample_filter, std::optional<glm::dvec2> jitter, History& out,
-                              Workers& workers);
+                              const Reconstruct& reconstruct, History& out);
 
 /// One row, after the color's: `scratch` still holds its rectified history, and view.out_color and view.out_weight are
 /// written.

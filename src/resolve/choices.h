@@ -4,6 +4,10 @@
 
 namespace varve {
 
+/// How frames are combined: exponential history, one frame back (Yang 2009, Salvi 2016); strict past and strict future
+/// merged with the present counted once; or every sample of the frames around, carried here and used once.
+enum class Accumulator { recursive, two_sided, gather };
+
 /// How history is read between pixels. All are non-expansive (math: |R(f)| <= 1), so recursion is stable.
 enum class HistoryFilter { bilinear, catmull_rom, catmull_rom9, catmull_rom5 };
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "base/parallel.h"
@@ -23,7 +24,12 @@ struct Present {
   Plane<float> valid;                    ///< 1 where color came finite from the file, 0 elsewhere and in the border
   std::vector<std::uint8_t> rows_valid;  ///< per row: 1 when every pixel of it is valid
   Plane<glm::vec2> motion;     ///< dilated backward motion, pixels, y down; NaN where unusable; empty: at rest
+  Plane<glm::vec2> forward;    ///< the same to the next frame; empty unless asked for and in the file
   Plane<float> depth;          ///< of the surface that lent the motion, +inf for background; may be empty
+  Plane<std::uint32_t> id;     ///< of that surface, to be compared only; empty unless the plan needs it
+  Plane<glm::vec3> normal;     ///< of that surface, of length 1, or 0 where unknown; empty unless the plan needs it
+  Plane<float> reactive;       ///< of the pixel itself, 0..1: how much less history counts; may be empty
+  Plane<float> responsive;     ///< of the pixel itself, 0 and up: factor on the weight of the present; may be empty
   std::size_t not_finite = 0;  ///< pixels with a channel that was NaN or infinite
   std::size_t companions_not_finite = 0;  ///< values of companions that were NaN or infinite
 };

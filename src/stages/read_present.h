@@ -20,6 +20,8 @@ using FileSet = std::vector<FramePixels>;
 struct ChannelNeeds {
   bool depth = false, motion = false;
   bool whole_parts = false;  ///< every channel of the parts that hold a color or a companion
+  bool forward = false;      ///< vectors to the next frame, even where there are others
+  bool id = false, normal = false, reactive = false, responsive = false;
 };
 
 /// Reads what a frame needs, each channel once. Throws what read_channels throws.
@@ -36,6 +38,9 @@ struct ReadOptions {
   MotionParameters motion;
   bool use_depth = false;  ///< depth is decoded and kept with the present
   bool use_motion = false;
+  bool use_forward = false;  ///< vectors to the next frame too, where the file has them
+  bool as_stored = false;    ///< vectors are not dilated, and not made where the file has none in that direction
+  bool use_id = false, use_normal = false, use_reactive = false, use_responsive = false;  ///< likewise
 };
 
 /// Converts one subject. `into_working_space` may be null. `memory` holds the previous frame's forward vectors where

@@ -100,6 +100,31 @@ TEST(Motion, DilationTakesTheDepthOfTheChosenPixel) {
   }
 }
 
+TEST(Motion, DilationCarriesIdAndNormalWithTheVector) {
+  Workers workers(1);
+  const Window w{-2, 5, 11, 14};
+  for (const Dilation dilation : {Dilation::none, Dilation::nearest, Dilation::longest}) {
+    const Present p = test::noise_present(w, {4, 0, 5, 0.2, true, 1}, workers);
+    // Each pixel's own place as its id and its normal: what comes out tells which pixel lent its vector.
+    SurfaceMarks marks{Plane<std::uint32_t>(w), Plane<glm::vec3>(w)};
+    for (int y = w.y0; y < w.y1; ++y)
+      for (int x = w.x0; x < w.x1; ++x) {
+        marks.id.at(x, y) = std::uint32_t((y + 10) * 1000 + x + 10);
+        marks.normal.at(x, y) = glm::vec3(float(x), float(y), 1.0f);
+      }
+    const DilatedMotion d = dilate_motion(p.motion.clone(), p.depth, dilation, workers, std::move(marks));
+    for (int y = w.y0; y < w.y1; ++y)
+      for (int x = w.x0; x < w.x1; ++x) {
+        const int lx = int(d.marks.id.at(x, y) % 1000) - 10, ly = int(d.marks.id.at(x, y) / 1000) - 10;
+        ASSERT_TRUE(std::abs(lx - x) <= 1 && std::abs(ly - y) <= 1 && w.contains(lx, ly));
+        const glm::vec2 lent = p.motion.at(lx, ly), got = d.motion.at(x, y);
+        ASSERT_TRUE(lent == got || (std::isnan(lent.x) && std::isnan(got.x)));
+        ASSERT_EQ(d.depth.at(x, y), p.depth.at(lx, ly));
+        ASSERT_EQ(d.marks.normal.at(x, y), glm::vec3(float(lx), float(ly), 1.0f));
+      }
+  }
+}
+
 TEST(Motion, InvertingAUniformMoveGivesItsOpposite) {
   const Window before{0, 0, 20, 10}, now{6, 0, 26, 10};
   for (const glm::vec2 move : {glm::vec2(3, 0), glm::vec2(2.5f, -0.75f), glm::vec2(0.0f)}) {
