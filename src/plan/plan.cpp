@@ -33,6 +33,12 @@ bool has_motion(const Subject& s) { return s.backward || s.forward; }
 
 // What was asked for outright and cannot be done. Falling back silently would change the picture without a word.
 void check_possible(const SequenceInfo& info, const Parameters& parameters) {
+  if (parameters.accumulator != Accumulator::recursive)
+    for (const Subject& subject : info.first.subjects)
+      if (!subject.companions.empty())
+        throw Failure(ExitCode::inconsistent,
+                      "--channels go by the weights of the color with --accumulator recursive only; give that, or "
+                      "--channel-weights own");
   if (parameters.recursive.disocclusion == Disocclusion::depth)
     for (const Subject& subject : info.first.subjects)
       if (!subject.depth)
@@ -237,8 +243,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   check_possible(info, parameters);
   Plan plan;
   Planner planner(info, parameters, output, plan);
-  if (parameters.accumulator == Accumulator::gather)
-    plan.use_depth = plan.use_id = plan.use_forward = true;
+  if (parameters.accumulator == Accumulator::gather) plan.use_depth = plan.use_id = plan.use_forward = true;
   planner.add("read", true, "");
   planner.add("sanitize", true, "pixels that are not finite are kept from spreading");
   planner.motion();

@@ -2,7 +2,12 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -176,6 +181,76 @@ TEST_F(Channels, SameBytesForAnyNumberOfThreads) {
   const std::string one = bytes_of(folder / "out/o.0006.exr");
   ASSERT_EQ(run({"--channels", "Key,Fill,AO", "--threads", "3"}).code, 0);
   EXPECT_EQ(bytes_of(folder / "out/o.0006.exr"), one);
+}
+
+TEST_F(Channels, AccumulatorsThatCannotKeepTheSumAreRefused) {
+  const Outcome outcome = run({"--channels", "Key", "--accumulator", "gather"});
+  EXPECT_EQ(outcome.code, 4) << outcome.err;
+  EXPECT_NE(outcome.err.find("--channel-weights own"), std::string::npos) << outcome.err;
+}
+
+/// A beauty without vectors in one part, a light in another one that reaches two pixels beyond it on every side.
+void write_parts(const std::filesystem::path& path, int frame) {
+  const Imath::Box2i inner({0, 0}, {15, 11}), outer({-2, -2}, {17, 13}), display({0, 0}, {15, 11});
+  std::vector<float> beauty(16 * 12), light(20 * 16);
+  for (int y = -2; y < 14; ++y)
+    for (int x = -2; x < 18; ++x) {
+      const float value = 0.5f + noise(x + 2, y + 2, frame, 3);
+      light[std::size_t(y + 2) * 20 + std::size_t(x + 2)] = value;
+      if (x >= 0 && x < 16 && y >= 0 && y < 12) beauty[std::size_t(y) * 16 + std::size_t(x)] = value;
+    }
+  std::vector<Imf::Header> headers;
+  for (const auto& [name, window] : {std::pair{"beauty", inner}, {"key", outer}}) {
+    Imf::Header header(display, window);
+    header.setName(name);
+    header.setType(Imf::SCANLINEIMAGE);
+    for (const char* k : {"R", "G", "B"}) header.channels().insert(k, Imf::Channel(Imf::FLOAT));
+    headers.push_back(header);
+  }
+  Imf::MultiPartOutputFile file(path.c_str(), headers.data(), int(headers.size()));
+  for (int part = 0; part < 2; ++part) {
+    Imf::FrameBuffer pixels;
+    for (const char* k : {"R", "G", "B"})
+      pixels.insert(k,
+                    Imf::Slice::Make(Imf::FLOAT, part == 0 ? beauty.data() : light.data(), part == 0 ? inner : outer));
+    Imf::OutputPart out(file, part);
+    out.setFrameBuffer(pixels);
+    out.writePixels(part == 0 ? 12 : 16);
+  }
+}
+
+std::vector<float> green_of(const std::filesystem::path& path, int part) {
+  Imf::MultiPartInputFile file(path.c_str());
+  Imf::InputPart in(file, part);
+  const Imath::Box2i window = in.header().dataWindow();
+  std::vector<float> values(std::size_t(window.size().x + 1) * std::size_t(window.size().y + 1));
+  Imf::FrameBuffer pixels;
+  pixels.insert("G", Imf::Slice::Make(Imf::FLOAT, values.data(), window));
+  in.setFrameBuffer(pixels);
+  in.readPixels(window.min.y, window.max.y);
+  return values;
+}
+
+TEST_F(Channels, LightsMayLieInAPartOfTheirOwnWithAnotherWindow) {
+  for (int frame = 1; frame <= 3; ++frame) write_parts(folder / ("p.000" + std::to_string(frame) + ".exr"), frame);
+  const Outcome outcome = run_varve(
+      {"resolve", "p.####.exr", "-o", "out/p.####.exr", "--layer", "beauty", "--channels", "key", "--convention", "none"},
+      folder.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<float> beauty = green_of(folder / "out/p.0003.exr", 0), light = green_of(folder / "out/p.0003.exr", 1),
+                           before = green_of(folder / "p.0003.exr", 1);
+  int changed = 0;
+  for (int y = -2; y < 14; ++y)
+    for (int x = -2; x < 18; ++x) {
+      const std::size_t at = std::size_t(y + 2) * 20 + std::size_t(x + 2);
+      if (x >= 0 && x < 16 && y >= 0 && y < 12) {
+        EXPECT_NEAR(light[at], beauty[std::size_t(y) * 16 + std::size_t(x)], 2e-6f) << x << "," << y;
+        changed += light[at] != before[at];
+      } else {
+        EXPECT_EQ(light[at], before[at]) << x << "," << y;
+      }
+    }
+  EXPECT_GT(changed, 150);
 }
 
 }  // namespace
