@@ -43,8 +43,10 @@ struct Frame {
     Workers workers(2);
     ForwardMemory memory;
     std::size_t bad = 0;
-    return read_present(subject, files, w, w, {{}, false, false, wanted, wanted, wanted, wanted}, nullptr, memory, bad,
-                        workers);
+    return read_present(
+        subject, files, w, w,
+        {.motion = {}, .use_id = wanted, .use_normal = wanted, .use_reactive = wanted, .use_responsive = wanted},
+        nullptr, memory, bad, workers);
   }
 };
 
