@@ -46,8 +46,8 @@ struct CompanionMove {
   glm::dvec4 rest{0.0};     ///< what is left, relative to the value
 };
 
-/// Finds what was done to the color at a pixel: `history` is its history after rectification, and what the result is
-/// matched with; not used when `has_history` is false, where `result` says what became of the present.
+/// Finds what was done to the color at a pixel. `result` (four floats) is its history after rectification; where there
+/// is no history, what became of the present.
 CompanionMove find_move(const AccumulateView& view, const CompanionRows& color, int x, int y, bool has_history,
                         const float* result);
 

@@ -180,6 +180,27 @@ TEST(Companions, AgreeWithTheirSlowTwin) {
   EXPECT_GT(moved, 3000u);
 }
 
+// A light that is half of the color is half of what becomes of it, whatever was done.
+TEST(Companions, HalfOfTheColorStaysHalf) {
+  Workers workers(2);
+  for (const Settings& s : every_setting()) {
+    SCOPED_TRACE(s.name);
+    History history;
+    for (int frame = 0; frame < 6; ++frame) {
+      Present p = frame_of(frame, 0, workers);
+      const Window& w = p.color.window();
+      p.companions.emplace_back(w, kPresentBorder, glm::vec4(0.0f));
+      for (int y = w.y0; y < w.y1; ++y)
+        for (int x = w.x0; x < w.x1; ++x) p.companions[0].at(x, y) = 0.5f * p.color.at(x, y);
+      history = accumulate(p, history, s.recursive, s.rectify, s.jitter, 1, {}, workers).history;
+      for (int y = w.y0; y < w.y1; ++y)
+        for (int x = w.x0; x < w.x1; ++x)
+          for (int k = 0; k < 4; ++k)
+            ASSERT_EQ(history.companions[0].at(x, y)[k], 0.5f * history.color.at(x, y)[k]) << x << "," << y;
+    }
+  }
+}
+
 // In proportion to what each has, the steady light would fall as well: 2.5 and 2.5.
 TEST(Companions, ALightThatGoesOutLeavesTheOthersAsTheyAre) {
   Workers workers(1);
