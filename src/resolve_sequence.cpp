@@ -210,10 +210,6 @@ Resolved resolve_recursive(const Setup& s, const FrameHeaders& headers, const Pr
                            const ScheduledFrame& scheduled, SubjectState& state, Workers& workers) {
   const Parameters& parameters = s.job.parameters;
   if (scheduled.restart) state.history = {};
-  if (!present.companions.empty())
-    throw Failure(
-        ExitCode::inconsistent,
-        "the recursive accumulator resolves --channels by their own weights only; give --channel-weights own");
   Resolved r;
   std::optional<glm::dvec2> jitter;
   if (headers.jitter) jitter = glm::dvec2(headers.jitter->x, headers.jitter->y);
@@ -253,13 +249,16 @@ std::vector<Resolved> resolve_gather(const Setup& s, const FrameWindow& window, 
   return resolved;
 }
 
-void count(FrameReport& report, const SourceFrame& source, const std::vector<Resolved>& resolved) {
+void count(FrameReport& report, const SourceFrame& source, const std::vector<Resolved>& resolved, Workers& workers) {
   report.vectors_bad += source.vectors_bad;
   for (std::size_t k = 0; k < resolved.size(); ++k) {
     report.pixels += source.presents[k].color.window().pixels();
     report.not_finite += source.presents[k].not_finite;
     report.restarted += resolved[k].accumulated.counts.restarted;
     report.clipped += resolved[k].accumulated.counts.clipped;
+    if (source.presents[k].companions.empty()) continue;
+    report.companions_not_finite += source.presents[k].companions_not_finite;
+    report.lights = report.lights + measure_light_sum(source.presents[k], resolved[k].accumulated.history, workers);
   }
 }
 
@@ -359,7 +358,7 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
                                      : gathers ? resolve_gather(s, window, i, {first, last}, states, workers)
                                                : resolve_recursive(s, source, scheduled, states, workers);
     if (summary.stopped) break;
-    count(report, source, resolved);
+    count(report, source, resolved, workers);
     report.resolve_seconds = clock.lap();
     if (stop()) break;
 

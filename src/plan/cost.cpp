@@ -24,7 +24,8 @@ constexpr CodecCost kNone{0.2, 0.9}, kLight{1.5, 3}, kZip{1.9, 6}, kPiz{5, 11}, 
 // Nanoseconds per pixel and pass, one thread with AVX2, as tests/bench/passes_bench prints them; inversion of forward
 // vectors, depth test and diagnostics are set by their traffic and not measured yet.
 constexpr double kConvert = 1.5, kSanitize = 1.6, kMotion = 1.1, kInvert = 12, kDilate = 8.5, kHistory = 22,
-                 kDepthTest = 1, kSampleWeights = 20, kBox = 28, kBlend = 8, kDiagnostic = 0.5;
+                 kDepthTest = 1, kSampleWeights = 20, kBox = 28, kBlend = 8, kDiagnostic = 0.5, kCompanionMove = 250,
+                 kCompanion = 140;
 
 // Two-sided passes each frame twice in each direction.
 constexpr double kTwoSidedPasses = 4;
@@ -170,7 +171,9 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
   const double passes = two_sided ? kTwoSidedPasses : 1;
   for (const Subject& subject : info.first.subjects) {
     const double motion = !plan.use_motion ? 0 : subject.backward ? kMotion : subject.forward ? kMotion + kInvert : 0;
-    nanoseconds += double(pixels_of(info, subject)) * (per_pixel + motion) * passes;
+    const std::size_t planes = subject.companions.size();
+    const double companions = planes == 0 ? 0 : kCompanionMove + double(planes) * (kCompanion + kConvert + kSanitize);
+    nanoseconds += double(pixels_of(info, subject)) * ((per_pixel + motion) * passes + companions);
   }
   return nanoseconds * 1e-9 / std::max(1, threads);
 }

@@ -35,6 +35,12 @@ bool has_motion(const Subject& s) { return s.backward || s.forward; }
 
 // What was asked for outright and cannot be done. Falling back silently would change the picture without a word.
 void check_possible(const SequenceInfo& info, const Parameters& parameters) {
+  if (parameters.accumulator != Accumulator::recursive)
+    for (const Subject& subject : info.first.subjects)
+      if (!subject.companions.empty())
+        throw Failure(ExitCode::inconsistent,
+                      "--channels go by the weights of the color with --accumulator recursive only; give that, or "
+                      "--channel-weights own");
   if (parameters.recursive.disocclusion == Disocclusion::depth)
     for (const Subject& subject : info.first.subjects)
       if (!subject.depth)
@@ -199,6 +205,19 @@ class Planner {
             : "the present weighs 1/n for n frames seen, at least " + short_number(r.alpha));
   }
 
+  void companions() {
+    std::size_t channels = 0;
+    for (const Subject& subject : info_.first.subjects)
+      for (const Companion& companion : subject.companions)
+        channels += std::size_t(std::count_if(companion.channels.begin(), companion.channels.end(),
+                                              [](const auto& channel) { return channel.has_value(); }));
+    add("companions", channels > 0,
+        channels == 0 ? "no channels go by the weights of a color; --channels names some"
+                      : std::to_string(channels) +
+                            " channels go by the weights of their color: the same pixels of the history, moved as far, "
+                            "blended alike; lights that add up to the color still do, and each frame reports how well");
+  }
+
   void outputs() {
     planned_aovs(output_, parameters_.accumulator);
     std::string names;
@@ -309,6 +328,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
     planner.sample_weights();
     planner.rectify();
     planner.blend();
+    planner.companions();
   }
   planner.outputs();
   planner.channels();

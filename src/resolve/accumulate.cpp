@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "resolve/accumulate_companions.h"
 #include "resolve/accumulate_row.h"
 #include "resolve/sample_weights.h"
 
@@ -165,9 +166,14 @@ void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const
   v.gamma = rectify.gamma;
 }
 
-/// `fetched` and `rectified` may be null; a `rectified` stands in place of the blend.
-AccumulateCounts run_rows(const AccumulateView& v, const RowPass* fetched, const RowPass* rectified, Isa isa,
-                          Workers& workers) {
+/// What stands between and after the steps of the kernel; null: nothing.
+struct RowSteps {
+  const RowPass* fetched = nullptr;
+  const RowPass* rectified = nullptr;  ///< stands in place of the blend
+  const CompanionPass* companions = nullptr;
+};
+
+AccumulateCounts run_rows(const AccumulateView& v, const RowSteps& steps, Isa isa, Workers& workers) {
   const RowKernel kernel = kernel_for(isa);
   std::vector<Scratch> scratch;
   for (int i = 0; i < workers.count(); ++i) scratch.emplace_back(v.width);
@@ -178,12 +184,13 @@ AccumulateCounts run_rows(const AccumulateView& v, const RowPass* fetched, const
     const int end = std::min(v.height, int(band + 1) * kBand);
     for (int y = int(band) * kBand; y < end; ++y) {
       kernel.fetch_history(v, y, rows);
-      if (fetched) (*fetched)(v, y, rows, worker);
+      if (steps.fetched) (*steps.fetched)(v, y, rows, worker);
       kernel.rectify_history(v, y, rows, counts[std::size_t(worker)]);
-      if (rectified)
-        (*rectified)(v, y, rows, worker);
+      if (steps.rectified)
+        (*steps.rectified)(v, y, rows, worker);
       else
         kernel.blend_present(v, y, rows, counts[std::size_t(worker)]);
+      if (steps.companions) accumulate_companions(v, y, rows, *steps.companions);
     }
   });
   AccumulateCounts sum;
@@ -205,10 +212,23 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
   AccumulateView v{};
   const PresentView made = view_present(v, present, rectify, recursive.sample_filter, jitter, workers);
   view_history(v, present, previous, recursive.disocclusion);
-  view_output(v, out, wanted);
+  // Companions are blended by the weight of the color.
+  DiagnosticsWanted planes = wanted;
+  planes.weight = wanted.weight || !present.companions.empty();
+  view_output(v, out, planes);
   view_choices(v, recursive, rectify);
   v.restart_bit = restart_bit;
-  out.counts = run_rows(v, nullptr, nullptr, isa, workers);
+  Reconstruct reconstruct;
+  if (!present.companions.empty() && recursive.sample_filter != SampleFilter::none && jitter)
+    reconstruct = [&](const Plane<glm::vec4>& samples) {
+      Present like;  // the same samples count
+      like.color = samples.clone();
+      like.valid = present.valid.clone();
+      return weigh_samples(like, recursive.sample_filter, *jitter, workers).color;
+    };
+  const CompanionPass companions = view_companions(v, present, previous, reconstruct, out.history);
+  out.counts = run_rows(v, {nullptr, nullptr, companions.empty() ? nullptr : &companions}, isa, workers);
+  if (!wanted.weight) out.diagnostics.weight = {};
   if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty())
     out.history.depth = present.depth.clone();
   return out;
@@ -225,7 +245,7 @@ History predict(const Present& present, const History& previous, const Recursive
   view_choices(v, recursive, rectify);
   v.anchor = BoxAnchor::mean;
   v.leave_present_out = true;
-  run_rows(v, nullptr, nullptr, Isa::automatic, workers);
+  run_rows(v, {}, Isa::automatic, workers);
   return std::move(out.history);
 }
 
@@ -241,7 +261,7 @@ AccumulateCounts visit_history(const Present& present, const History& previous, 
   view_diagnostics(v, present.color.window(), diagnostics, wanted);
   view_choices(v, recursive, rectify);
   v.restart_bit = restart_bit;
-  return run_rows(v, &fetched, &rectified, isa, workers);
+  return run_rows(v, {&fetched, &rectified, nullptr}, isa, workers);
 }
 
 }  // namespace varve

@@ -85,6 +85,7 @@ enum class Isa { automatic, baseline, avx2 };
 /// One frame: fetch the history along the motion, rectify, blend. Works on present.color.window(); the history may have
 /// another window. `jitter` (sample position minus pixel centre) is needed for a sample filter and ignored otherwise.
 /// Reads: window/2 pixels around each pixel of the present (2 with a sample filter), 2 around the previous position.
+/// Companions of the present are resolved along (resolve/accumulate_companions.h).
 /// `restart_bit` is noted in the reject plane where there is no history at all.
 Accumulated accumulate(const Present& present, const History& previous, const RecursiveParameters& recursive,
                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, std::uint32_t restart_bit,

@@ -112,6 +112,25 @@ RectifyParameters with_box(Box box, BoxSpace space = BoxSpace::rgb, int window =
   return p;
 }
 
+// The whole recursive step with channels that go with the color; without any it is BM_accumulate of the same choices.
+void BM_companions(benchmark::State& state) {
+  Scene& s = scene();
+  s.next.companions.clear();
+  s.history.companions.clear();
+  for (int i = 0; i < int(state.range(0)); ++i) {
+    s.next.companions.push_back(s.next.color.clone());
+    s.history.companions.push_back(s.history.color.clone());
+  }
+  for (auto _ : state) {
+    const Accumulated a = accumulate(s.next, s.history, {}, {}, {}, 1, {}, s.workers);
+    for (const Plane<glm::vec4>& plane : a.history.companions)
+      check(state, std::abs(plane.at(777, 555).g - a.history.color.at(777, 555).g) < 1e-5f);
+  }
+  s.next.companions.clear();
+  s.history.companions.clear();
+  per_pixel(state);
+}
+
 BENCHMARK(BM_copy_of_the_history)->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_sanitize)->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_decode_motion)->Unit(benchmark::kMillisecond);
@@ -134,6 +153,7 @@ ACCUMULATE(variance_minmax, {}, with_box(Box::variance_minmax), Isa::automatic);
 ACCUMULATE(variance_ycocg, {}, with_box(Box::variance, BoxSpace::ycocg), Isa::automatic);
 ACCUMULATE(variance_5x5, {}, with_box(Box::variance, BoxSpace::rgb, 5), Isa::automatic);
 ACCUMULATE(variance_7x7, {}, with_box(Box::variance, BoxSpace::rgb, 7), Isa::automatic);
+BENCHMARK(BM_companions)->Arg(0)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace varve
