@@ -3,9 +3,11 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 
+#include "diagnose/aov.h"
 #include "json.h"
 
 namespace varve::cli {
@@ -30,7 +32,7 @@ int terminal_columns() {
 std::string count_text(std::size_t count, const char* what) { return ", " + std::to_string(count) + " " + what; }
 
 JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
-  return line.number("frame", report.frame)
+  line.number("frame", report.frame)
       .text("path", report.path)
       .flag("written", report.written)
       .flag("skipped", report.skipped)
@@ -44,6 +46,11 @@ JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
       .number("clipped", double(report.clipped))
       .number("half_overflows", double(report.half_overflows))
       .text("restart", report.restart);
+  // Why history was not used, pixel by pixel: one count for each bit of the plane `reject`.
+  for (const RejectName& reason : reject_bits())
+    line.number("rejected_" + std::string(reason.name),
+                double(report.rejected[std::size_t(std::countr_zero(reason.bit))]));
+  return line;
 }
 
 }  // namespace

@@ -167,6 +167,8 @@ Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHead
   report.not_finite += r.present.not_finite;
   report.restarted += r.accumulated.counts.restarted;
   report.clipped += r.accumulated.counts.clipped;
+  for (std::size_t bit = 0; bit < report.rejected.size(); ++bit)
+    report.rejected[bit] += r.accumulated.counts.rejected[bit];
   return r;
 }
 

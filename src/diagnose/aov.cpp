@@ -10,8 +10,9 @@ constexpr Aov kAovs[] = {
     {"clip", "", PixelType::float32, "relative", "0 to 2", "inferno", 0, 1,
      "Clip distance: how far rectification moved the history, in RGB, over the longer of what it was and what it "
      "became."},
-    {"reject", "", PixelType::uint32, "bits", "0 to 127", "turbo", 0, 127,
-     "Why history was not used: a sum of the bits listed under REJECTION BITS. 0 where history was used."},
+    {"reject", "", PixelType::uint32, "bits", "0 to 8191", "turbo", 0, 8191,
+     "Why history was not used, or counts half or less of what it would: a sum of the bits listed under REJECTION "
+     "BITS. 0 where history was used."},
     {"motion", "xy", PixelType::float32, "pixels, y down", "any", "blue-red", -16, 16,
      "Backward motion used, after dilation: previous position minus this position."},
     {"weight", "", PixelType::float32, "fraction", "0 to 1", "viridis", 0, 1,
@@ -32,6 +33,12 @@ constexpr RejectName kBits[] = {
     {kRejectVector, "vector", "the vector is not finite or longer than --max-motion"},
     {kRejectEmptyHistory, "empty", "no valid history at the previous position"},
     {kRejectPresent, "present", "the present pixel is not finite"},
+    {kRejectNormal, "normal", "the surface at the previous position was turned by more than --normal-angle"},
+    {kRejectId, "id", "another id lay at the previous position (--id-test)"},
+    {kRejectSpeed, "speed", "the vector there was longer or shorter by more than --speed-difference"},
+    {kRejectDirection, "direction", "the vector there led elsewhere by more than --direction-angle"},
+    {kRejectAcceleration, "acceleration", "the vector there was another (--acceleration)"},
+    {kRejectReactive, "reactive", "the reactive mask takes half of the history or more"},
 };
 
 }  // namespace

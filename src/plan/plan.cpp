@@ -52,6 +52,31 @@ void check_possible(const SequenceInfo& info, const Parameters& parameters) {
                                             "--sample-filter none");
 }
 
+// A test that was asked for by name needs its channel in every layer.
+void check_tests(const SequenceInfo& info, const Parameters& parameters) {
+  const RejectParameters& reject = parameters.recursive.reject;
+  const auto refuse = [](const Subject& subject, const char* option, const char* what, const char* remedy) {
+    throw Failure(ExitCode::inconsistent,
+                  std::string(option) + " needs " + what + ", and " + layer_text(subject) + " has none; " + remedy);
+  };
+  if (reject.depth_slope > 0 && parameters.recursive.disocclusion != Disocclusion::depth)
+    throw Failure(ExitCode::usage, "--depth-slope widens the depth test, which is off; give --disocclusion depth");
+  for (const Subject& subject : info.first.subjects) {
+    if (reject.id != IdTest::off && !subject.id)
+      refuse(subject, "--id-test", "an id", "name it with --map id=CHANNEL, or give --id-test off");
+    if (reject.normal_angle > 0 && !subject.normal)
+      refuse(subject, "--normal-angle", "a normal",
+             "name it with --map normal.x=CHANNEL and so on, or give --normal-angle 0");
+    if (reject.tests_vectors() && !has_motion(subject))
+      refuse(subject,
+             reject.acceleration > 0 ? "--acceleration"
+             : reject.speed > 0      ? "--speed-difference"
+                                     : "--direction-angle",
+             "motion vectors",
+             "name them with --map motion.x=CHANNEL and --map motion.y=CHANNEL, or leave the test out");
+  }
+}
+
 /// Adds the passes in running order and remembers what they need.
 class Planner {
  public:
@@ -121,6 +146,51 @@ class Planner {
                    short_number(parameters_.recursive.depth_tolerance * 100) + " %"
         : any_depth ? "not asked for; --disocclusion depth turns it on"
                     : "there is no depth");
+  }
+
+  // Names of the tests with their numbers, or why there are none.
+  void rejection() {
+    const RejectParameters& r = parameters_.recursive.reject;
+    std::string tests;
+    const auto test = [&](bool asked, const std::string& text) {
+      if (asked) tests += (tests.empty() ? "" : ", ") + text;
+      return asked && info_.frames.size() > 1;
+    };
+    plan_.use_normal = test(r.normal_angle > 0, "normals by " + short_number(r.normal_angle) + " degrees");
+    plan_.use_id = test(r.id != IdTest::off, r.id == IdTest::soft ? "ids with soft edges" : "ids");
+    test(r.speed > 0, "lengths of vectors by " + short_number(r.speed) + " px");
+    test(r.direction > 0, "directions by " + short_number(r.direction) + " degrees");
+    test(r.acceleration > 0, "vectors from " + short_number(std::min(r.acceleration_low, r.acceleration)) + " to " +
+                                 short_number(r.acceleration) + " px");
+    constexpr std::array<const char*, 3> kThen = {"start over", "start over blurred", "converge faster"};
+    if (tests.empty()) return add("rejection", false, "no further test asked for");
+    if (info_.frames.size() < 2) return add("rejection", false, "no history");
+    add("rejection", true, "pixels " + std::string(kThen[std::size_t(r.on_reject)]) + " where these differ: " + tests);
+  }
+
+  void weights() {
+    const WeightParameters& w = parameters_.recursive.weight;
+    const bool reactive = std::any_of(info_.first.subjects.begin(), info_.first.subjects.end(),
+                                      [](const Subject& s) { return s.reactive.has_value(); });
+    const bool responsive = std::any_of(info_.first.subjects.begin(), info_.first.subjects.end(),
+                                        [](const Subject& s) { return s.responsive.has_value(); });
+    const bool history = info_.frames.size() > 1;
+    plan_.use_reactive = history && reactive && w.reactive > 0;
+    plan_.use_responsive = history && responsive;
+    std::string by;
+    const auto add_if = [&](bool used, const char* text) {
+      if (used) by += std::string(by.empty() ? "" : ", ") + text;
+    };
+    add_if(w.feedback == Feedback::luma, "agreement of luma");
+    add_if(w.speed_alpha > parameters_.recursive.alpha, "speed");
+    add_if(w.anti_flicker > 0, "nearness to the wall of the box");
+    add_if(plan_.use_reactive, "the reactive mask");
+    add_if(plan_.use_responsive, "the responsive mask");
+    add_if(w.weighing == Weighing::luminance, "brightness, which darkens");
+    add_if(w.weighing == Weighing::logarithm, "logarithms, which darkens");
+    if (by.empty()) return add("weights", false, "every pixel of the present weighs the same");
+    if (!history) return add("weights", false, "no history");
+    add("weights", true, "the present weighs by " + by);
   }
 
   void sample_weights() {
@@ -219,6 +289,7 @@ class Planner {
 
 Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const OutputRequest& output, int threads) {
   check_possible(info, parameters);
+  check_tests(info, parameters);
   Plan plan;
   Planner planner(info, parameters, output, plan);
   planner.add("read", true, "");
@@ -226,8 +297,10 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   planner.motion();
   planner.dilate();
   planner.history();
+  planner.rejection();
   planner.sample_weights();
   planner.rectify();
+  planner.weights();
   planner.blend();
   planner.outputs();
   planner.channels();

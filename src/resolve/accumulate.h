@@ -1,6 +1,7 @@
 // The recursive accumulator: one frame back, rectified by the neighborhood of the present.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -10,8 +11,10 @@
 
 #include "base/parallel.h"
 #include "base/plane.h"
+#include "base/reject.h"
 #include "resolve/choices.h"
 #include "resolve/present.h"
+#include "resolve/reject.h"
 
 namespace varve {
 
@@ -24,6 +27,8 @@ struct RecursiveParameters {
   Disocclusion disocclusion = Disocclusion::window;
   double depth_tolerance = 0.05;                    ///< relative difference of depth that still is the same surface
   SampleFilter sample_filter = SampleFilter::none;  ///< reconstruct the present from true sample positions
+  RejectParameters reject;
+  WeightParameters weight;
 };
 
 /// What history may say. Sources: Salvi 2016 (variance clipping), Pedersen 2016, Lopez.
@@ -41,7 +46,11 @@ struct History {
   Plane<glm::vec4> color;  ///< resolved RGBA, float, no border
   Plane<float> total;      ///< sum of sample weights so far; 0: no valid data
   Plane<float> spread;     ///< sum of squared normalized weights; 1/spread is the effective sample count
-  Plane<float> depth;      ///< of the frame it was made from; empty without the depth test
+  // Of the frame it was made from; each empty unless a test needs it.
+  Plane<float> depth;
+  Plane<glm::vec2> motion;
+  Plane<std::uint32_t> id;
+  Plane<glm::vec3> normal;
   std::vector<std::uint8_t> rows_valid;
 
   bool empty() const { return color.empty(); }
@@ -58,9 +67,10 @@ struct DiagnosticsWanted {
 };
 
 struct AccumulateCounts {
-  std::size_t restarted = 0;    ///< pixels without usable history
-  std::size_t clipped = 0;      ///< pixels whose history was moved
-  std::size_t vectors_bad = 0;  ///< of the restarted: because of their vector
+  std::size_t restarted = 0;                        ///< pixels without usable history
+  std::size_t clipped = 0;                          ///< pixels whose history was moved
+  std::size_t vectors_bad = 0;                      ///< of the restarted: because of their vector
+  std::array<std::size_t, kRejectBits> rejected{};  ///< pixels with each bit of the plane `reject`
 };
 
 struct Accumulated {
