@@ -11,6 +11,7 @@
 #include "exr/write_frame.h"
 #include "plan/preset.h"
 #include "resolve/accumulate.h"
+#include "stages/find_cut.h"
 #include "stages/preflight.h"
 #include "stages/previews.h"
 #include "stages/read_present.h"
@@ -141,11 +142,31 @@ bool is_needed(const std::vector<ScheduledFrame>& schedule, std::size_t index) {
 struct Resolved {
   Present present;
   Accumulated accumulated;
-  History prediction;  ///< only where the diagnostic plane of that name is asked for
+  History prediction;         ///< only where the diagnostic plane of that name is asked for
+  Plane<glm::vec4> finished;  ///< what is written, where that is not what the history keeps
 };
 
+/// Decides whether a frame begins a new shot, before it meets its history: marks it in the schedule if so, and says
+/// why. `before` becomes the trace of this frame.
+void look_for_cut(const Present& present, const Part& part, FrameTrace& before, ScheduledFrame& scheduled,
+                  const ResolveEvents& events, Workers& workers) {
+  FrameTrace now = trace_of(present, part, scheduled.frame, workers);
+  if (!scheduled.restart) {
+    const CutEvidence evidence = judge_cut(before, now, present);
+    if (evidence.cut) {
+      scheduled.restart = true;
+      scheduled.restart_reason = "cut found: " + evidence.sentence;
+      if (events.warning)
+        events.warning("frame " + std::to_string(scheduled.frame) + " is taken for the first of a new shot: " +
+                       evidence.sentence + "; --find-cuts off lets history pass");
+    }
+  }
+  before = std::move(now);
+}
+
 Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHeaders& headers, const FileSet& pixels,
-                         const ScheduledFrame& scheduled, SubjectState& state, FrameReport& report, Workers& workers) {
+                         ScheduledFrame& scheduled, SubjectState& state, FrameTrace* trace, FrameReport& report,
+                         const ResolveEvents& events, Workers& workers) {
   const Part& part = headers.files.front().parts[std::size_t(part_of(subject))];
   const Parameters& parameters = s.job.parameters;
   if (scheduled.restart) state = {};
@@ -155,6 +176,11 @@ Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHead
                    {parameters.motion, s.plan.use_depth, s.plan.use_motion, s.plan.use_id, s.plan.use_normal,
                     s.plan.use_reactive, s.plan.use_responsive},
                    s.into_working_space ? &*s.into_working_space : nullptr, state.forward, report.vectors_bad, workers);
+  if (trace) {
+    look_for_cut(r.present, part, *trace, scheduled, events, workers);
+    if (scheduled.restart) state.history = {};
+    report.restart = scheduled.restart_reason;
+  }
   std::optional<glm::dvec2> jitter;
   if (headers.jitter) jitter = glm::dvec2(headers.jitter->x, headers.jitter->y);
   const std::uint32_t restart_bit = scheduled.restart_reason == "first frame" ? kRejectFirstFrame : kRejectCut;
@@ -163,6 +189,7 @@ Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHead
   const auto is_prediction = [](const Aov* aov) { return aov->name == "prediction"; };
   if (std::any_of(s.aovs.begin(), s.aovs.end(), is_prediction))
     r.prediction = predict(r.present, state.history, parameters.recursive, parameters.rectify, workers);
+  if (scheduled.write) r.finished = fall_back(r.present, r.accumulated.history, parameters.fallback, workers);
   report.pixels += part.data_window.pixels();
   report.not_finite += r.present.not_finite;
   report.restarted += r.accumulated.counts.restarted;
@@ -218,11 +245,12 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
   if (events.planned) events.planned(s.info, s.plan);
 
   // Preflight: what will be written, and whether it can be.
-  const std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash);
+  std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash);
   check_outputs(job, schedule);
 
   Workers workers(job.threads);
   std::vector<SubjectState> states(s.info.first.subjects.size());
+  FrameTrace trace;
   const ChannelNeeds needs{s.plan.use_depth,  s.plan.use_motion,   job.request.keep_channels, s.plan.use_id,
                            s.plan.use_normal, s.plan.use_reactive, s.plan.use_responsive};
   ResolveSummary summary;
@@ -231,7 +259,7 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
   const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
 
   for (std::size_t i = 0; i < schedule.size() && !stop(); ++i) {
-    const ScheduledFrame& scheduled = schedule[i];
+    ScheduledFrame& scheduled = schedule[i];
     FrameReport report;
     report.frame = scheduled.frame;
     report.restart = scheduled.restart_reason;
@@ -259,11 +287,11 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     std::vector<Resolved> resolved;
     std::vector<ResolvedSubject> subjects;
     for (std::size_t k = 0; k < headers.subjects.size(); ++k)
-      resolved.push_back(
-          resolve_subject(s, headers.subjects[k], headers, pixels, scheduled, states[k], report, workers));
+      resolved.push_back(resolve_subject(s, headers.subjects[k], headers, pixels, scheduled, states[k],
+                                         job.find_cuts && k == 0 ? &trace : nullptr, report, events, workers));
     for (std::size_t k = 0; k < resolved.size(); ++k)
-      subjects.push_back(
-          {&headers.subjects[k], &resolved[k].present, &resolved[k].accumulated, &resolved[k].prediction});
+      subjects.push_back({&headers.subjects[k], &resolved[k].present, &resolved[k].accumulated, &resolved[k].prediction,
+                          &resolved[k].finished});
     report.resolve_seconds = clock.lap();
     if (stop()) break;
 

@@ -47,6 +47,11 @@ constexpr Word<Feedback> kFeedbacks[] = {
     {"fixed", Feedback::fixed, "as --alpha says"},
     {"luma", Feedback::luma, "--feedback-high where the luma of history and present agree, --feedback-low where not"},
 };
+constexpr Word<MotionBlur> kMotionBlurs[] = {
+    {"off", MotionBlur::off, "the resolve"},
+    {"own", MotionBlur::own, "the present blurred along the vector of the pixel"},
+    {"neighbors", MotionBlur::neighbors, "likewise along the longest vector of the 20 pixel tiles around"},
+};
 constexpr Word<Weighing> kWeighings[] = {
     {"none", Weighing::none, "light is averaged as it is: unbiased"},
     {"luminance", Weighing::luminance, "weights 1/(1+luma): calms fireflies, darkens; a 50 % edge of 16 loses 89 %"},
@@ -216,6 +221,18 @@ std::vector<Knob> knobs() {
            [](auto& p) -> auto& { return p.recursive.weight.weighing; }, kWeighings)},
       {"exposure", "STOPS", reject, expert, "Exposure at which --weighing takes its 1 as white.",
        number([](auto& p) -> auto& { return p.recursive.weight.exposure; }, {-100, 100})},
+      {"motion-blur", "WORD", reject, advanced,
+       "What is written of what moves fast; history does not see it. A look for displays, no step towards the truth.",
+       word(
+           [](auto& p) -> auto& { return p.fallback.motion_blur; }, kMotionBlurs)},
+      {"motion-blur-from", "PIXELS", reject, expert, "Speed at which --motion-blur sets in.",
+       number([](auto& p) -> auto& { return p.fallback.blur_from; }, {0, 16384})},
+      {"motion-blur-to", "PIXELS", reject, expert, "Speed from which on nothing else is seen.",
+       number([](auto& p) -> auto& { return p.fallback.blur_to; }, {0, 16384, true})},
+      {"blur-young", "FRAMES", reject, advanced,
+       "Write pixels whose history is younger than this slightly blurred, less with each frame: calms the first frames "
+       "after a cut and what was just uncovered. History does not see it. 0 writes them as they are.",
+       number([](auto& p) -> auto& { return p.fallback.young_frames; }, {0, 1000})},
   };
 }
 

@@ -234,6 +234,21 @@ class Planner {
             : "the present weighs 1/n for n frames seen, at least " + short_number(r.alpha));
   }
 
+  void fallback() {
+    const FallbackParameters& f = parameters_.fallback;
+    std::string what;
+    if (f.motion_blur != MotionBlur::off && plan_.use_motion)
+      what = "what moves by " + short_number(f.blur_from) + " to " + short_number(f.blur_to) +
+             " px and more is shown blurred along its motion";
+    if (f.young_frames > 0)
+      what += (what.empty() ? "" : "; ") + std::string("the first ") + std::to_string(f.young_frames) +
+              " frames of a history are shown soft";
+    add("fallback", !what.empty(),
+        !what.empty()                      ? what + "; history is not touched"
+        : f.motion_blur != MotionBlur::off ? "no vectors"
+                                           : "the resolve is shown as it is");
+  }
+
   void outputs() {
     std::string names;
     for (const std::string& name : output_.aovs) {
@@ -302,6 +317,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   planner.rectify();
   planner.weights();
   planner.blend();
+  planner.fallback();
   planner.outputs();
   planner.channels();
   std::size_t present = 0;

@@ -33,6 +33,10 @@ enum class Feedback { fixed, luma };
 /// What is averaged: light; light over 1 + its luma (Karis); or its logarithm.
 enum class Weighing { none, luminance, logarithm };
 
+/// What is shown of what moves fast: the resolve, or the present blurred along the pixel's own vector or along the
+/// longest around (Pedersen 2016).
+enum class MotionBlur { off, own, neighbors };
+
 /// Reconstruction of the present from true sample positions.
 enum class SampleFilter { none, tent, gaussian, blackman_harris, mitchell };
 

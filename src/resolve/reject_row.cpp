@@ -28,18 +28,18 @@ Position previous_position(const AccumulateView& v, int x, int y) {
   return {int(bx), int(by), float(hx - bx), float(hy - by), hx, hy};
 }
 
-/// How much the depth of the present changes over a pixel, x and y together. The lesser of both sides, so that an edge
-/// beside the pixel is no slope; background has none.
+/// How much the depth of the present changes over a pixel, x and y together. The lesser of both sides where they agree
+/// in sign, so that an edge beside the pixel is no slope, and a wire is none.
 double depth_slope(const Plane<float>& depth, int x, int y) {
   const Window& w = depth.window();
   const double z = double(depth.at(x, y));
   const auto change = [&](int dx, int dy) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const int side : {-1, 1})
-      if (w.contains(x + side * dx, y + side * dy)) {
-        const double difference = std::abs(double(depth.at(x + side * dx, y + side * dy)) - z);
-        if (difference < least) least = difference;  // false for NaN, which two backgrounds give
-      }
+    const bool before = w.contains(x - dx, y - dy), after = w.contains(x + dx, y + dy);
+    double a = before ? z - double(depth.at(x - dx, y - dy)) : 0.0;
+    double b = after ? double(depth.at(x + dx, y + dy)) - z : 0.0;
+    if (!before) a = b;
+    if (!after) b = a;
+    const double least = a * b > 0 ? std::min(std::abs(a), std::abs(b)) : 0.0;  // 0 for the NaN of two backgrounds
     return std::isfinite(least) ? least : 0.0;
   };
   return change(1, 0) + change(0, 1);

@@ -24,11 +24,14 @@ std::vector<double> lumas(const Present& present, int x, int y) {
 }
 
 double slope_along(const Plane<float>& depth, int x, int y, int dx, int dy) {
+  std::vector<double> steps;
+  const double z = double(depth.at(x, y));
+  if (depth.window().contains(x - dx, y - dy)) steps.push_back(z - double(depth.at(x - dx, y - dy)));
+  if (depth.window().contains(x + dx, y + dy)) steps.push_back(double(depth.at(x + dx, y + dy)) - z);
   double least = std::numeric_limits<double>::infinity();
-  for (const int s : {-1, 1}) {
-    if (!depth.window().contains(x + s * dx, y + s * dy)) continue;
-    const double d = std::abs(double(depth.at(x + s * dx, y + s * dy)) - double(depth.at(x, y)));
-    if (std::isfinite(d)) least = std::min(least, d);
+  for (const double s : steps) {
+    if (std::isnan(s) || s == 0 || (s > 0) != (steps.front() > 0)) return 0;
+    least = std::min(least, std::abs(s));
   }
   return std::isfinite(least) ? least : 0;
 }
