@@ -28,8 +28,8 @@ Position previous_position(const AccumulateView& v, int x, int y) {
   return {int(bx), int(by), float(hx - bx), float(hy - by), hx, hy};
 }
 
-/// How much the depth of the present changes over a pixel, x and y together. The lesser of both sides where they agree
-/// in sign, so that an edge beside the pixel is no slope, and a wire is none.
+/// How much the depth of the present changes over a pixel, x and y together. The lesser of both sides, so that an edge
+/// beside the pixel is no slope; none where both sides lead steeply the same way, as on a wire.
 double depth_slope(const Plane<float>& depth, int x, int y) {
   const Window& w = depth.window();
   const double z = double(depth.at(x, y));
@@ -39,8 +39,9 @@ double depth_slope(const Plane<float>& depth, int x, int y) {
     double b = after ? double(depth.at(x + dx, y + dy)) - z : 0.0;
     if (!before) a = b;
     if (!after) b = a;
-    const double least = a * b > 0 ? std::min(std::abs(a), std::abs(b)) : 0.0;  // 0 for the NaN of two backgrounds
-    return std::isfinite(least) ? least : 0.0;
+    const double least = std::min(std::abs(a), std::abs(b)), most = std::max(std::abs(a), std::abs(b));
+    const bool ridge = a * b < 0 && least > 0.5 * most;
+    return std::isfinite(least) && !ridge ? least : 0.0;  // two backgrounds differ by NaN
   };
   return change(1, 0) + change(0, 1);
 }

@@ -173,7 +173,7 @@ TEST_F(Reject, ThePlanSaysWhatRunsAndReadsOnlyThat) {
 TEST(FindCuts, OnTellsTheEvidenceAndOffLetsHistoryPass) {
   Folder folder;
   fs::create_directory(folder / "o");
-  ASSERT_EQ(run_varve({"synth", "cut", "-o", "s", "-f", "23-26", "-q"}, folder.path()).code, 0);
+  ASSERT_EQ(run_varve({"synth", "cut", "-o", "s", "-f", "23-27", "-q"}, folder.path()).code, 0);
   const Arguments line = {"resolve", "s/cut.####.exr", "-o", "o/o.####.exr", "--aov", "reject", "--keep", "none"};
   Outcome outcome = run_varve(line, folder.path());
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -188,8 +188,8 @@ TEST(FindCuts, OnTellsTheEvidenceAndOffLetsHistoryPass) {
   EXPECT_EQ(pixel_of(folder / "o/o.0025.exr", "varve.reject", 160, 90), 2.0f);
   EXPECT_EQ(pixel_of(folder / "o/o.0026.exr", "varve.reject", 160, 90), 0.0f);
   // The frames that a frame was made from are told as they were.
-  EXPECT_NE(bytes_of(folder / "o/o.0026.exr").find("25-26"), std::string::npos);
-  EXPECT_EQ(bytes_of(folder / "o/o.0026.exr").find("23-26"), std::string::npos);
+  EXPECT_NE(bytes_of(folder / "o/o.0027.exr").find("25-27"), std::string::npos);
+  EXPECT_EQ(bytes_of(folder / "o/o.0027.exr").find("23-27"), std::string::npos);
   // A cut that is given needs no evidence and gives the same pixels.
   Arguments given = line;
   given[3] = "o/g.####.exr";

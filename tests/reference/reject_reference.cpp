@@ -28,11 +28,13 @@ double slope_along(const Plane<float>& depth, int x, int y, int dx, int dy) {
   const double z = double(depth.at(x, y));
   if (depth.window().contains(x - dx, y - dy)) steps.push_back(z - double(depth.at(x - dx, y - dy)));
   if (depth.window().contains(x + dx, y + dy)) steps.push_back(double(depth.at(x + dx, y + dy)) - z);
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), most = 0;
   for (const double s : steps) {
-    if (std::isnan(s) || s == 0 || (s > 0) != (steps.front() > 0)) return 0;
+    if (std::isnan(s)) return 0;
     least = std::min(least, std::abs(s));
+    most = std::max(most, std::abs(s));
   }
+  if (steps.size() == 2 && steps[0] * steps[1] < 0 && least / most > 0.5) return 0;
   return std::isfinite(least) ? least : 0;
 }
 

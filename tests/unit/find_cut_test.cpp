@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
 #include <filesystem>
 #include <map>
 
@@ -22,7 +23,7 @@ struct Seen {
 
 /// Cuts found in frames of a scene.
 Seen cuts_in(const std::string& scene, const std::string& frames, double noise, bool vectors = true) {
-  const fs::path folder = fs::path(testing::TempDir()) / ("find_cut_" + scene);
+  const fs::path folder = fs::path(testing::TempDir()) / ("find_cut_" + scene + std::to_string(getpid()));
   fs::remove_all(folder);
   SynthJob synth;
   synth.scene = scene;
