@@ -101,6 +101,9 @@ TEST_F(Reject, EveryTestHasItsOptionItsBitAndItsCount) {
     EXPECT_NEAR(out("G", 9, 9), 0.9f, 1e-6f) << c.name;
     EXPECT_EQ(reported(std::string("rejected_") + c.name), 1) << c.name;
   }
+  // What rested before has no direction; see tests/unit/reject_test.cpp for what moved.
+  ASSERT_EQ(run({"--direction-angle", "30"}).code, 0);
+  EXPECT_EQ(out("varve.reject", 5, 4), 0.0f);
   ASSERT_EQ(run({}).code, 0);
   EXPECT_NEAR(out("G", 5, 4), 0.9f, 1e-6f);
   for (const char* name : {"depth", "normal", "id", "speed", "direction", "acceleration", "reactive"})

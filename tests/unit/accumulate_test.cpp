@@ -248,15 +248,17 @@ TEST(Accumulate, BothProcessorsGiveTheSameBits) {
 
 TEST(Accumulate, ThreadsDoNotChangeAByte) {
   Workers one(1), many(5);
-  test::NoiseOptions noise{7, 0.02, 4, 0.02, false, 1};
   const Window w{0, 0, 97, 53};
-  const Present present = noise_present(w, noise, one);
-  RecursiveParameters recursive;
-  recursive.sample_filter = SampleFilter::gaussian;
-  const History h = next_history(present, {}, recursive, {}, one);
   const glm::dvec2 jitter(-0.4, 0.3);
-  EXPECT_TRUE(same_bits(accumulate(present, h, recursive, {}, jitter, 1, {}, one).history.color,
-                        accumulate(present, h, recursive, {}, jitter, 1, {}, many).history.color));
+  for (const TwinCase& c : all_cases()) {
+    const Present present = noise_present(w, c.noise, one);
+    const History h = next_history(present, {}, c.recursive, c.rectify, one);
+    const Accumulated a = accumulate(present, h, c.recursive, c.rectify, jitter, 1, kAll, one);
+    const Accumulated b = accumulate(present, h, c.recursive, c.rectify, jitter, 1, kAll, many);
+    EXPECT_TRUE(same_bits(a.history.color, b.history.color)) << c.name;
+    EXPECT_EQ(a.counts.rejected, b.counts.rejected) << c.name;
+    EXPECT_EQ(a.counts.restarted, b.counts.restarted) << c.name;
+  }
 }
 
 TEST(Accumulate, ConstantInConstantOutExactly) {

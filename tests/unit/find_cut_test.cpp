@@ -111,6 +111,28 @@ TEST(FindCut, ExposureAloneIsNoEvidence) {
   EXPECT_TRUE(e.cut) << e.judged << " " << e.sentence;
 }
 
+TEST(FindCut, CamerasAreComparedByTheirTurn) {
+  Workers workers(1);
+  const Window w{0, 0, 120, 80};
+  const Present p = picture(w, 4, 1, workers);
+  const auto camera = [](double degrees, double scale) {
+    const double c = std::cos(degrees * 3.14159265358979 / 180), s = std::sin(degrees * 3.14159265358979 / 180);
+    Part part;
+    part.attributes.push_back({"worldToCamera", "m44f", "", {c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0, 5, 6, 7, 1}});
+    for (double& n : part.attributes[0].numbers) n *= scale;
+    return part;
+  };
+  for (const double turn : {0.0, 3.0, 40.0, 170.0}) {
+    const CutEvidence e =
+        judge_cut(trace_of(p, camera(10, 1), 1, workers), trace_of(p, camera(10 + turn, 100), 2, workers), p);
+    EXPECT_NEAR(e.turned, turn, 1e-4);
+    EXPECT_FALSE(e.cut);  // the picture is the same: a matrix alone decides nothing
+    EXPECT_EQ(e.sentence.find("turned") != std::string::npos, turn > 1) << e.sentence;
+  }
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(judge_cut(trace_of(p, camera(10, 0), 1, workers), trace_of(p, camera(nan, 1), 2, workers), p).turned, 0);
+}
+
 TEST(FindCut, HostilePicturesAreJudgedWithoutHarm) {
   Workers workers(1);
   const Part part;
