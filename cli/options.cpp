@@ -17,6 +17,10 @@ constexpr Word<bool> kKeeps[] = {
     {"all", true, "other channels and parts pass through, bit for bit"},
     {"none", false, "only what was resolved is written"},
 };
+constexpr Word<bool> kFindCuts[] = {
+    {"on", true, "history starts anew where a frame does not follow from the one before"},
+    {"off", false, "only --cuts and gaps in the frame numbers count"},
+};
 constexpr Word<std::optional<Compression>> kCompressions[] = {
     {"keep", std::nullopt, "as the input; ZIP where that is lossy"},
     {"none", Compression::none, "largest and fastest"},
@@ -69,6 +73,12 @@ void add_file_options(std::vector<Option>& rows) {
        number([](auto& s) -> auto& { return s.job.preroll; }, {0, 100000})});
   add({"cuts", 0, "LIST", kEach & ~kProbe, kBasic, group, "First frames of new shots; history does not cross them.",
        frames([](auto& s) -> auto& { return s.job.cuts; })});
+  add({"find-cuts", 0, "WORD", kResolve, kAdvanced, group,
+       "Whether cuts are looked for in the pixels of the main layer, too, and told with the evidence. Moves of the "
+       "camera "
+       "and changes of light are none. With --resume, frames behind a cut that was found are done again.",
+       word(
+           [](auto& s) -> auto& { return s.job.find_cuts; }, kFindCuts)});
   add({"resume", 0, "", kResolve, kBasic, group,
        "Skip frames whose output is complete and was made with the same parameters from the same frames. Frames that "
        "were "

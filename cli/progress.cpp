@@ -3,10 +3,12 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
+#include "diagnose/aov.h"
 #include "json.h"
 
 namespace varve::cli {
@@ -45,7 +47,7 @@ std::string residual_text(const LightSum& lights) {
 }
 
 JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
-  return line.number("frame", report.frame)
+  line.number("frame", report.frame)
       .text("path", report.path)
       .flag("written", report.written)
       .flag("skipped", report.skipped)
@@ -64,6 +66,11 @@ JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
       .number("light_residual_input", residual(report.lights, report.lights.input))
       .number("light_residual", residual(report.lights, report.lights.resolved))
       .text("restart", report.restart);
+  // Why history was not used, pixel by pixel: one count for each bit of the plane `reject`.
+  for (const RejectName& reason : reject_bits())
+    line.number("rejected_" + std::string(reason.name),
+                double(report.rejected[std::size_t(std::countr_zero(reason.bit))]));
+  return line;
 }
 
 }  // namespace

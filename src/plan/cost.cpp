@@ -117,12 +117,19 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
     if (!whole.contains({ref.file, ref.part}))
       raw += bytes_of(part_of(info, ref), part_of(info, ref).channels[std::size_t(ref.channel)]);
   const bool depth_test = plan.use_depth && parameters.recursive.disocclusion == Disocclusion::depth;
+  // Of a frame and of the one before: vectors, ids and normals for the tests; and what is shown instead of the history.
+  const RejectParameters& reject = parameters.recursive.reject;
+  const std::size_t tested =
+      (reject.tests_vectors() ? 8u : 0u) + (plan.use_id ? 8u : 0u) + (plan.use_normal ? 24u : 0u);
+  const std::size_t masks = (plan.use_reactive ? 4u : 0u) + (plan.use_responsive ? 4u : 0u);
+  const std::size_t shown = parameters.fallback.any() ? 16 : 0;
   const bool two_sided = parameters.accumulator == Accumulator::two_sided;
   const bool gathers = parameters.accumulator == Accumulator::gather;
   std::size_t histories = 0, at_work = 0;
   for (const Subject& subject : info.first.subjects) {
     const std::size_t pixels = pixels_of(info, subject);
-    histories += pixels * (2 * (16 + 8) + (depth_test ? 4 : 0));  // color, count and weight; depth of the last frame
+    // color, count and weight; depth of the last frame
+    histories += pixels * (2 * (16 + 8) + (depth_test ? 4 : 0) + tested + masks + shown);
     // A companion's sample, and its values of the last frame and of this one.
     const std::size_t companions = subject.companions.size();
     histories += pixels * 2 * 16 * companions;

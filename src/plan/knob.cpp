@@ -42,6 +42,30 @@ constexpr Word<Disocclusion> kDisocclusions[] = {
     {"window", Disocclusion::window, "only where the previous position lies outside the data window"},
     {"depth", Disocclusion::depth, "also where another surface lay there; needs depth"},
 };
+constexpr Word<IdTest> kIdTests[] = {
+    {"off", IdTest::off, "ids are not looked at"},
+    {"hard", IdTest::hard, "history of another id does not count"},
+    {"soft", IdTest::soft, "history counts by the share of its four pixels that have the id: no hard edges"},
+};
+constexpr Word<OnReject> kOnRejects[] = {
+    {"restart", OnReject::restart, "the pixel starts over; in half doubt its history counts half"},
+    {"blur", OnReject::blur, "likewise, with a slightly blurred present mixed in by the doubt"},
+    {"weight", OnReject::weight, "history stays, to be rectified, and the present counts --reject-alpha"},
+};
+constexpr Word<Feedback> kFeedbacks[] = {
+    {"fixed", Feedback::fixed, "as --alpha says"},
+    {"luma", Feedback::luma, "--feedback-high where the luma of history and present agree, --feedback-low where not"},
+};
+constexpr Word<MotionBlur> kMotionBlurs[] = {
+    {"off", MotionBlur::off, "the resolve"},
+    {"own", MotionBlur::own, "the present blurred along the vector of the pixel"},
+    {"neighbors", MotionBlur::neighbors, "likewise along the longest vector of the 20 pixel tiles around"},
+};
+constexpr Word<Weighing> kWeighings[] = {
+    {"none", Weighing::none, "light is averaged as it is: unbiased"},
+    {"luminance", Weighing::luminance, "weights 1/(1+luma): calms fireflies, darkens; a 50 % edge of 16 loses 89 %"},
+    {"log", Weighing::logarithm, "the mean of logarithms: darkens, brightens slowly"},
+};
 constexpr Word<SampleFilter> kSampleFilters[] = {
     {"none", SampleFilter::none, "every sample of a pixel counts the same"},
     {"tent", SampleFilter::tent, "falls linearly to zero at one pixel"},
@@ -93,7 +117,7 @@ std::vector<Knob> knobs() {
   constexpr auto basic = Tier::basic, advanced = Tier::advanced, expert = Tier::expert;
   constexpr std::string_view motion = "Motion and depth", history = "History", rectify = "Rectification",
                              around = "Gather (--accumulator gather)",
-                             sides = "Past and future (--accumulator two-sided)";
+                             sides = "Past and future (--accumulator two-sided)", reject = "Rejection";
   return {
       {"dilation", "WORD", motion, advanced, "Whose vector a pixel follows.",
        word(
@@ -194,6 +218,79 @@ std::vector<Knob> knobs() {
       {"space", "WORD", rectify, expert, "Color space of the box.",
        word(
            [](auto& p) -> auto& { return p.rectify.space; }, kBoxSpaces)},
+
+      {"depth-slope", "FACTOR", reject, expert,
+       "Depth difference allowed under --disocclusion depth besides --depth-tolerance, as a multiple of how much the "
+       "depth of the present changes over a pixel: slanted floors stay whole. 0 allows none, 10 is SVGF's.",
+       number([](auto& p) -> auto& { return p.recursive.reject.depth_slope; }, {0, 1000})},
+      {"normal-angle", "DEGREES", reject, advanced,
+       "Drop history of a surface turned by more than this; needs a normal. 0 does not test.",
+       number([](auto& p) -> auto& { return p.recursive.reject.normal_angle; }, {0, 180})},
+      {"id-test", "WORD", reject, advanced,
+       "Drop history of another object; needs an id. A stencil is an id: --map id=CHANNEL.",
+       word(
+           [](auto& p) -> auto& { return p.recursive.reject.id; }, kIdTests)},
+      {"speed-difference", "PIXELS", reject, expert,
+       "Drop history whose vector was longer or shorter by more than this. Opposite vectors look the same to it. 0 "
+       "does "
+       "not test.",
+       number([](auto& p) -> auto& { return p.recursive.reject.speed; }, {0, 16384})},
+      {"direction-angle", "DEGREES", reject, expert,
+       "Drop history whose vector led elsewhere by more than this; vectors below half a pixel have no direction. 0 "
+       "does "
+       "not test.",
+       number([](auto& p) -> auto& { return p.recursive.reject.direction; }, {0, 180})},
+      {"acceleration", "PIXELS", reject, advanced,
+       "Drop history whose vector differs by this much, as that of another surface does. Blind where an occluder "
+       "leaves "
+       "what rests. 0 does not test.",
+       number([](auto& p) -> auto& { return p.recursive.reject.acceleration; }, {0, 16384})},
+      {"acceleration-low", "PIXELS", reject, expert,
+       "Difference where the doubt of --acceleration begins, which grows linearly from there.",
+       number([](auto& p) -> auto& { return p.recursive.reject.acceleration_low; }, {0, 16384})},
+      {"on-reject", "WORD", reject, advanced, "What is done where a test rejects history.",
+       word(
+           [](auto& p) -> auto& { return p.recursive.reject.on_reject; }, kOnRejects)},
+      {"reject-alpha", "WEIGHT", reject, expert, "Weight of the present under --on-reject weight.",
+       number([](auto& p) -> auto& { return p.recursive.reject.alpha; }, {0, 1, true})},
+      {"reactive", "STRENGTH", reject, advanced,
+       "How much of history the mask mapped with --map reactive=CHANNEL takes away where it is 1. 0 ignores the mask. "
+       "A mask mapped with --map responsive=CHANNEL is a factor on the weight of the present.",
+       number([](auto& p) -> auto& { return p.recursive.weight.reactive; }, {0, 1})},
+      {"speed-alpha", "WEIGHT", reject, expert,
+       "Weight of the present at --full-speed and beyond, where it is above --alpha. 0: speed does not matter.",
+       number([](auto& p) -> auto& { return p.recursive.weight.speed_alpha; }, {0, 1})},
+      {"full-speed", "PIXELS", reject, expert, "Length of the vector at which --speed-alpha is reached, linearly.",
+       number([](auto& p) -> auto& { return p.recursive.weight.full_speed; }, {0, 16384, true})},
+      {"feedback", "WORD", reject, advanced, "What the weight of history goes by.",
+       word(
+           [](auto& p) -> auto& { return p.recursive.weight.feedback; }, kFeedbacks)},
+      {"feedback-low", "WEIGHT", reject, expert, "Weight of history under --feedback luma where luma disagrees.",
+       number([](auto& p) -> auto& { return p.recursive.weight.feedback_low; }, {0, 1})},
+      {"feedback-high", "WEIGHT", reject, expert, "Weight of history under --feedback luma where luma agrees.",
+       number([](auto& p) -> auto& { return p.recursive.weight.feedback_high; }, {0, 1})},
+      {"anti-flicker", "STRENGTH", reject, expert,
+       "Attenuate the weight of the present where history is near the wall of the box, before it is clipped. 1 is the "
+       "published form, which freezes a pixel at the wall; 0 does not attenuate.",
+       number([](auto& p) -> auto& { return p.recursive.weight.anti_flicker; }, {0, 1})},
+      {"weighing", "WORD", reject, expert,
+       "What is averaged. All but none darken bright detail and depend on the exposure.",
+       word(
+           [](auto& p) -> auto& { return p.recursive.weight.weighing; }, kWeighings)},
+      {"exposure", "STOPS", reject, expert, "Exposure at which --weighing takes its 1 as white.",
+       number([](auto& p) -> auto& { return p.recursive.weight.exposure; }, {-100, 100})},
+      {"motion-blur", "WORD", reject, advanced,
+       "What is written of what moves fast; history does not see it. A look for displays, no step towards the truth.",
+       word(
+           [](auto& p) -> auto& { return p.fallback.motion_blur; }, kMotionBlurs)},
+      {"motion-blur-from", "PIXELS", reject, expert, "Speed at which --motion-blur sets in.",
+       number([](auto& p) -> auto& { return p.fallback.blur_from; }, {0, 16384})},
+      {"motion-blur-to", "PIXELS", reject, expert, "Speed from which on nothing else is seen.",
+       number([](auto& p) -> auto& { return p.fallback.blur_to; }, {0, 16384, true})},
+      {"blur-young", "FRAMES", reject, advanced,
+       "Write pixels whose history is younger than this slightly blurred, less with each frame: calms the first frames "
+       "after a cut and what was just uncovered. History does not see it. 0 writes them as they are.",
+       number([](auto& p) -> auto& { return p.fallback.young_frames; }, {0, 1000})},
   };
 }
 

@@ -6,6 +6,7 @@
 #include "gather/gather.h"
 #include "motion/motion.h"
 #include "resolve/accumulate.h"
+#include "resolve/fallback.h"
 #include "resolve/two_sided.h"
 
 namespace varve {
@@ -16,6 +17,7 @@ struct Parameters {
   MotionParameters motion;
   RecursiveParameters recursive;
   RectifyParameters rectify;
+  FallbackParameters fallback;
   GatherParameters gather;
   TwoSidedParameters two_sided;
 };

@@ -33,14 +33,26 @@ bool has_depth(const Subject& s) { return s.depth.has_value(); }
 bool only_forward(const Subject& s) { return !s.backward && s.forward; }
 bool has_motion(const Subject& s) { return s.backward || s.forward; }
 
+// Both sides weigh by what they have seen: what moves that from pixel to pixel is of the recursive accumulator.
+void check_two_sided(const SequenceInfo& info, const Parameters& parameters) {
+  for (const Subject& subject : info.first.subjects)
+    if (!subject.companions.empty())
+      throw Failure(ExitCode::usage,
+                    "--channels are not resolved by --accumulator two-sided; leave them out, or give --channel-weights "
+                    "own or --accumulator recursive");
+  if (parameters.recursive.reject.on_reject != OnReject::restart)
+    throw Failure(ExitCode::usage,
+                  "--accumulator two-sided drops what it does not believe; give --on-reject restart with it, or "
+                  "--accumulator recursive");
+  if (!(parameters.recursive.weight == WeightParameters{}))
+    throw Failure(ExitCode::usage,
+                  "--accumulator two-sided weighs every sample by its age alone; leave out --feedback, --speed-alpha, "
+                  "--anti-flicker, --reactive and --weighing, or give --accumulator recursive");
+}
+
 // What was asked for outright and cannot be done. Falling back silently would change the picture without a word.
 void check_possible(const SequenceInfo& info, const Parameters& parameters) {
-  if (parameters.accumulator != Accumulator::recursive)
-    for (const Subject& subject : info.first.subjects)
-      if (!subject.companions.empty())
-        throw Failure(ExitCode::inconsistent,
-                      "--channels go by the weights of the color with --accumulator recursive only; give that, or "
-                      "--channel-weights own");
+  if (parameters.accumulator == Accumulator::two_sided) check_two_sided(info, parameters);
   if (parameters.recursive.disocclusion == Disocclusion::depth)
     for (const Subject& subject : info.first.subjects)
       if (!subject.depth)
@@ -59,6 +71,31 @@ void check_possible(const SequenceInfo& info, const Parameters& parameters) {
                                             known +
                                             "; give it with --jitter FILE or --jitter halton23:N, or give "
                                             "--sample-filter none");
+}
+
+// A test that was asked for by name needs its channel in every layer.
+void check_tests(const SequenceInfo& info, const Parameters& parameters) {
+  const RejectParameters& reject = parameters.recursive.reject;
+  const auto refuse = [](const Subject& subject, const char* option, const char* what, const char* remedy) {
+    throw Failure(ExitCode::inconsistent,
+                  std::string(option) + " needs " + what + ", and " + layer_text(subject) + " has none; " + remedy);
+  };
+  if (reject.depth_slope > 0 && parameters.recursive.disocclusion != Disocclusion::depth)
+    throw Failure(ExitCode::usage, "--depth-slope widens the depth test, which is off; give --disocclusion depth");
+  for (const Subject& subject : info.first.subjects) {
+    if (reject.id != IdTest::off && !subject.id)
+      refuse(subject, "--id-test", "an id", "name it with --map id=CHANNEL, or give --id-test off");
+    if (reject.normal_angle > 0 && !subject.normal)
+      refuse(subject, "--normal-angle", "a normal",
+             "name it with --map normal.x=CHANNEL and so on, or give --normal-angle 0");
+    if (reject.tests_vectors() && !has_motion(subject))
+      refuse(subject,
+             reject.acceleration > 0 ? "--acceleration"
+             : reject.speed > 0      ? "--speed-difference"
+                                     : "--direction-angle",
+             "motion vectors",
+             "name them with --map motion.x=CHANNEL and --map motion.y=CHANNEL, or leave the test out");
+  }
 }
 
 /// Adds the passes in running order and remembers what they need.
@@ -103,11 +140,6 @@ class Planner {
   void sides() {
     const bool two_sided = parameters_.accumulator == Accumulator::two_sided;
     if (!two_sided) return refuse_spill();
-    for (const Subject& subject : info_.first.subjects)
-      if (!subject.companions.empty())
-        throw Failure(ExitCode::usage,
-                      "--channels are not resolved by --accumulator two-sided; leave them out, or give --accumulator "
-                      "recursive");
     plan_.use_forward = true;
     const auto inverts = [](const Subject& s) { return has_motion(s) && !(s.backward && s.forward); };
     const std::size_t inverted = count_if(info_, inverts);
@@ -163,6 +195,53 @@ class Planner {
                     : "there is no depth");
   }
 
+  // Names of the tests with their numbers, or why there are none.
+  void rejection() {
+    const RejectParameters& r = parameters_.recursive.reject;
+    std::string tests;
+    const auto test = [&](bool asked, const std::string& text) {
+      if (asked) tests += (tests.empty() ? "" : ", ") + text;
+      return asked && info_.frames.size() > 1;
+    };
+    plan_.use_normal = test(r.normal_angle > 0, "normals by " + short_number(r.normal_angle) + " degrees");
+    plan_.use_id = test(r.id != IdTest::off, r.id == IdTest::soft ? "ids with soft edges" : "ids");
+    test(r.speed > 0, "lengths of vectors by " + short_number(r.speed) + " px");
+    test(r.direction > 0, "directions by " + short_number(r.direction) + " degrees");
+    test(r.acceleration > 0, "vectors from " + short_number(std::min(r.acceleration_low, r.acceleration)) + " to " +
+                                 short_number(r.acceleration) + " px");
+    constexpr std::array<const char*, 3> kThen = {"start over", "start over blurred", "converge faster"};
+    if (tests.empty()) return add("rejection", false, "no further test asked for");
+    if (info_.frames.size() < 2) return add("rejection", false, "no history");
+    add("rejection", true, "pixels " + std::string(kThen[std::size_t(r.on_reject)]) + " where these differ: " + tests);
+  }
+
+  void weights() {
+    if (parameters_.accumulator == Accumulator::two_sided)
+      return add("weights", false, "both sides weigh by what they have seen");
+    const WeightParameters& w = parameters_.recursive.weight;
+    const bool reactive = std::any_of(info_.first.subjects.begin(), info_.first.subjects.end(),
+                                      [](const Subject& s) { return s.reactive.has_value(); });
+    const bool responsive = std::any_of(info_.first.subjects.begin(), info_.first.subjects.end(),
+                                        [](const Subject& s) { return s.responsive.has_value(); });
+    const bool history = info_.frames.size() > 1;
+    plan_.use_reactive = history && reactive && w.reactive > 0;
+    plan_.use_responsive = history && responsive;
+    std::string by;
+    const auto add_if = [&](bool used, const char* text) {
+      if (used) by += std::string(by.empty() ? "" : ", ") + text;
+    };
+    add_if(w.feedback == Feedback::luma, "agreement of luma");
+    add_if(w.speed_alpha > parameters_.recursive.alpha, "speed");
+    add_if(w.anti_flicker > 0, "nearness to the wall of the box");
+    add_if(plan_.use_reactive, "the reactive mask");
+    add_if(plan_.use_responsive, "the responsive mask");
+    add_if(w.weighing == Weighing::luminance, "brightness, which darkens");
+    add_if(w.weighing == Weighing::logarithm, "logarithms, which darkens");
+    if (by.empty()) return add("weights", false, "every pixel of the present weighs the same");
+    if (!history) return add("weights", false, "no history");
+    add("weights", true, "the present weighs by " + by);
+  }
+
   void sample_weights() {
     plan_.use_jitter = parameters_.recursive.sample_filter != SampleFilter::none;
     add("sample weights", plan_.use_jitter,
@@ -216,6 +295,21 @@ class Planner {
                       : std::to_string(channels) +
                             " channels go by the weights of their color: the same pixels of the history, moved as far, "
                             "blended alike; lights that add up to the color still do, and each frame reports how well");
+  }
+
+  void fallback() {
+    const FallbackParameters& f = parameters_.fallback;
+    std::string what;
+    if (f.motion_blur != MotionBlur::off && plan_.use_motion)
+      what = "what moves by " + short_number(f.blur_from) + " to " + short_number(f.blur_to) +
+             " px and more is shown blurred along its motion";
+    if (f.young_frames > 0)
+      what += (what.empty() ? "" : "; ") + std::string("the first ") + std::to_string(f.young_frames) +
+              " frames of a history are shown soft";
+    add("fallback", !what.empty(),
+        !what.empty()                      ? what + "; history is not touched"
+        : f.motion_blur != MotionBlur::off ? "no vectors"
+                                           : "the resolve is shown as it is");
   }
 
   void outputs() {
@@ -314,6 +408,7 @@ std::vector<const Aov*> planned_aovs(const OutputRequest& request, Accumulator a
 
 Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const OutputRequest& output, int threads) {
   check_possible(info, parameters);
+  check_tests(info, parameters);
   Plan plan;
   Planner planner(info, parameters, output, plan);
   planner.add("read", true, "");
@@ -325,11 +420,14 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
     planner.sides();
     planner.dilate();
     planner.history();
+    planner.rejection();
     planner.sample_weights();
     planner.rectify();
+    planner.weights();
     planner.blend();
-    planner.companions();
   }
+  planner.companions();
+  planner.fallback();
   planner.outputs();
   planner.channels();
   std::size_t present = 0;

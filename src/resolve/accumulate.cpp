@@ -6,6 +6,7 @@
 
 #include "resolve/accumulate_companions.h"
 #include "resolve/accumulate_row.h"
+#include "resolve/row_passes.h"
 #include "resolve/sample_weights.h"
 
 namespace varve {
@@ -68,13 +69,29 @@ struct Scratch {
   Plane<glm::vec4> history;
   Plane<float> total, spread;
   Plane<std::uint32_t> reject;
+  Plane<float> trust, steadiness;
+  Plane<double> present_weight;
+  RowCounts counts{};
+  std::array<std::size_t, kRejectBits> rejected{};
 
-  explicit Scratch(int width)
+  Scratch(int width, bool weighs)
       : history(Window{0, 0, width, 1}),
         total(Window{0, 0, width, 1}),
         spread(Window{0, 0, width, 1}),
-        reject(Window{0, 0, width, 1}) {}
-  RowScratch view() { return {floats(history), total.row(0), spread.row(0), reject.row(0)}; }
+        reject(Window{0, 0, width, 1}) {
+    if (!weighs) return;
+    trust = Plane<float>(Window{0, 0, width, 1});
+    steadiness = Plane<float>(Window{0, 0, width, 1});
+    present_weight = Plane<double>(Window{0, 0, width, 1});
+  }
+  RowScratch view() {
+    return {floats(history), total.row(0), spread.row(0), reject.row(0),
+            present_weight.empty() ? nullptr : present_weight.row(0)};
+  }
+  RowPassScratch extra() {
+    if (present_weight.empty()) return {};
+    return {trust.row(0), steadiness.row(0), present_weight.row(0)};
+  }
 };
 
 History make_history(const Window& w) {
@@ -118,7 +135,9 @@ PresentView view_present(AccumulateView& v, const Present& present, const Rectif
   return made;
 }
 
-void view_history(AccumulateView& v, const Present& present, const History& previous, Disocclusion disocclusion) {
+void view_history(AccumulateView& v, const Present& present, const History& previous,
+                  const RecursiveParameters& recursive) {
+  const bool depth_test = recursive.disocclusion == Disocclusion::depth && !tests_depth_apart(recursive);
   if (previous.empty()) return;
   const Window &w = present.color.window(), &h = previous.color.window();
   v.history_width = h.width();
@@ -129,7 +148,7 @@ void view_history(AccumulateView& v, const Present& present, const History& prev
   v.history_total = read_rows(previous.total);
   v.history_spread = read_rows(previous.spread);
   v.history_rows_valid = previous.rows_valid.data();
-  if (disocclusion == Disocclusion::depth && !present.depth.empty() && !previous.depth.empty()) {
+  if (depth_test && !present.depth.empty() && !previous.depth.empty()) {
     v.depth = read_rows(present.depth);
     v.history_depth = read_rows(previous.depth);
   }
@@ -168,41 +187,62 @@ void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const
 
 /// What stands between and after the steps of the kernel; null: nothing.
 struct RowSteps {
+  const RowPassView& passes;
   const RowPass* fetched = nullptr;
-  const RowPass* rectified = nullptr;  ///< stands in place of the blend
+  const RowPass* rectified = nullptr;  ///< stands in place of the blend, and of what weighs it
   const CompanionPass* companions = nullptr;
 };
+
+void run_row(const AccumulateView& v, const RowSteps& steps, const RowKernel& kernel, int y, Scratch& scratch,
+             int worker) {
+  const RowPassView& passes = steps.passes;
+  const RowScratch rows = scratch.view();
+  const RowPassScratch extra = scratch.extra();
+  kernel.fetch_history(v, y, rows);
+  if (passes.tests_surfaces || passes.tests_vectors) test_history(passes, y, rows, extra);
+  if (passes.weighs && passes.parameters.weight.anti_flicker > 0) find_clip_events(passes, y, rows, extra);
+  if (steps.fetched) (*steps.fetched)(v, y, rows, worker);
+  kernel.rectify_history(v, y, rows, scratch.counts);
+  if (steps.rectified) {
+    if (passes.tests_surfaces || passes.tests_vectors)
+      for (int x = 0; x < v.width; ++x) rows.total[x] *= extra.trust[x];
+    (*steps.rectified)(v, y, rows, worker);
+  } else {
+    if (passes.weighs) weigh_present(passes, y, rows, extra);
+    kernel.blend_present(v, y, rows, scratch.counts);
+    if (passes.finishes) finish_row(passes, y, rows, extra);
+    if (steps.companions) accumulate_companions(v, y, rows, passes, *steps.companions);
+  }
+  count_bits(rows.reject, v.width, scratch.rejected);
+}
 
 AccumulateCounts run_rows(const AccumulateView& v, const RowSteps& steps, Isa isa, Workers& workers) {
   const RowKernel kernel = kernel_for(isa);
   std::vector<Scratch> scratch;
-  for (int i = 0; i < workers.count(); ++i) scratch.emplace_back(v.width);
-  std::vector<RowCounts> counts(std::size_t(workers.count()));
+  for (int i = 0; i < workers.count(); ++i) scratch.emplace_back(v.width, steps.passes.weighs);
   constexpr int kBand = 8;  // rows: neighbors share what is in the cache
   workers.for_each(std::size_t((v.height + kBand - 1) / kBand), [&](std::size_t band, int worker) {
-    const RowScratch rows = scratch[std::size_t(worker)].view();
     const int end = std::min(v.height, int(band + 1) * kBand);
-    for (int y = int(band) * kBand; y < end; ++y) {
-      kernel.fetch_history(v, y, rows);
-      if (steps.fetched) (*steps.fetched)(v, y, rows, worker);
-      kernel.rectify_history(v, y, rows, counts[std::size_t(worker)]);
-      if (steps.rectified)
-        (*steps.rectified)(v, y, rows, worker);
-      else
-        kernel.blend_present(v, y, rows, counts[std::size_t(worker)]);
-      if (steps.companions) accumulate_companions(v, y, rows, *steps.companions);
-    }
+    for (int y = int(band) * kBand; y < end; ++y) run_row(v, steps, kernel, y, scratch[std::size_t(worker)], worker);
   });
   AccumulateCounts sum;
-  for (const RowCounts& c : counts) {
-    sum.restarted += c.restarted;
-    sum.clipped += c.clipped;
-    sum.vectors_bad += c.vectors_bad;
+  for (const Scratch& s : scratch) {
+    sum.restarted += s.counts.restarted;
+    sum.clipped += s.counts.clipped;
+    sum.vectors_bad += s.counts.vectors_bad;
+    for (std::size_t bit = 0; bit < sum.rejected.size(); ++bit) sum.rejected[bit] += s.rejected[bit];
   }
   return sum;
 }
 
 }  // namespace
+
+void remember_surfaces(History& history, const Present& present, const RecursiveParameters& p) {
+  if (p.disocclusion == Disocclusion::depth && !present.depth.empty()) history.depth = present.depth.clone();
+  if (p.reject.tests_vectors() && !present.motion.empty()) history.motion = present.motion.clone();
+  if (p.reject.id != IdTest::off && !present.id.empty()) history.id = present.id.clone();
+  if (p.reject.normal_angle > 0 && !present.normal.empty()) history.normal = present.normal.clone();
+}
 
 Accumulated accumulate(const Present& present, const History& previous, const RecursiveParameters& recursive,
                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, std::uint32_t restart_bit,
@@ -211,7 +251,7 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
   if (present.color.window().empty()) return out;
   AccumulateView v{};
   const PresentView made = view_present(v, present, rectify, recursive.sample_filter, jitter, workers);
-  view_history(v, present, previous, recursive.disocclusion);
+  view_history(v, present, previous, recursive);
   // Companions are blended by the weight of the color.
   DiagnosticsWanted planes = wanted;
   planes.weight = wanted.weight || !present.companions.empty();
@@ -226,11 +266,11 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
       like.valid = present.valid.clone();
       return weigh_samples(like, recursive.sample_filter, *jitter, workers).color;
     };
+  const RowPassView passes = row_passes_for(v, present, previous, recursive);
   const CompanionPass companions = view_companions(v, present, previous, reconstruct, out.history);
-  out.counts = run_rows(v, {nullptr, nullptr, companions.empty() ? nullptr : &companions}, isa, workers);
+  out.counts = run_rows(v, {passes, nullptr, nullptr, companions.empty() ? nullptr : &companions}, isa, workers);
   if (!wanted.weight) out.diagnostics.weight = {};
-  if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty())
-    out.history.depth = present.depth.clone();
+  remember_surfaces(out.history, present, recursive);
   return out;
 }
 
@@ -240,12 +280,15 @@ History predict(const Present& present, const History& previous, const Recursive
   if (present.color.window().empty()) return std::move(out.history);
   AccumulateView v{};
   const PresentView made = view_present(v, present, rectify, SampleFilter::none, {}, workers);
-  view_history(v, present, previous, recursive.disocclusion);
+  view_history(v, present, previous, recursive);
   view_output(v, out, {});
   view_choices(v, recursive, rectify);
   v.anchor = BoxAnchor::mean;
   v.leave_present_out = true;
-  run_rows(v, {}, Isa::automatic, workers);
+  // Only what tells whether there is a history; how it would have been weighed does not matter here.
+  RowPassView passes = row_passes_for(v, present, previous, recursive);
+  passes.finishes = false;
+  run_rows(v, {passes}, Isa::automatic, workers);
   return std::move(out.history);
 }
 
@@ -257,11 +300,12 @@ AccumulateCounts visit_history(const Present& present, const History& previous, 
   if (present.color.window().empty()) return {};
   AccumulateView v{};
   const PresentView made = view_present(v, present, rectify, recursive.sample_filter, jitter, workers);
-  view_history(v, present, previous, recursive.disocclusion);
+  view_history(v, present, previous, recursive);
   view_diagnostics(v, present.color.window(), diagnostics, wanted);
   view_choices(v, recursive, rectify);
   v.restart_bit = restart_bit;
-  return run_rows(v, {&fetched, &rectified, nullptr}, isa, workers);
+  const RowPassView passes = row_passes_for(v, present, previous, recursive);
+  return run_rows(v, {passes, &fetched, &rectified}, isa, workers);
 }
 
 }  // namespace varve

@@ -1,6 +1,7 @@
 // The recursive accumulator: one frame back, rectified by the neighborhood of the present.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -11,8 +12,10 @@
 
 #include "base/parallel.h"
 #include "base/plane.h"
+#include "base/reject.h"
 #include "resolve/choices.h"
 #include "resolve/present.h"
+#include "resolve/reject.h"
 
 namespace varve {
 
@@ -25,6 +28,8 @@ struct RecursiveParameters {
   Disocclusion disocclusion = Disocclusion::window;
   double depth_tolerance = 0.05;                    ///< relative difference of depth that still is the same surface
   SampleFilter sample_filter = SampleFilter::none;  ///< reconstruct the present from true sample positions
+  RejectParameters reject;
+  WeightParameters weight;
 };
 
 /// What history may say. Sources: Salvi 2016 (variance clipping), Pedersen 2016, Lopez.
@@ -43,7 +48,11 @@ struct History {
   std::vector<Plane<glm::vec4>> companions;  ///< resolved, in the order of Present::companions
   Plane<float> total;                        ///< sum of sample weights so far; 0: no valid data
   Plane<float> spread;  ///< sum of squared normalized weights; 1/spread is the effective sample count
-  Plane<float> depth;   ///< of the frame it was made from; empty without the depth test
+  // Of the frame it was made from; each empty unless a test needs it.
+  Plane<float> depth;
+  Plane<glm::vec2> motion;
+  Plane<std::uint32_t> id;
+  Plane<glm::vec3> normal;
   std::vector<std::uint8_t> rows_valid;
 
   bool empty() const { return color.empty(); }
@@ -68,9 +77,10 @@ struct DiagnosticsWanted {
 };
 
 struct AccumulateCounts {
-  std::size_t restarted = 0;    ///< pixels without usable history
-  std::size_t clipped = 0;      ///< pixels whose history was moved
-  std::size_t vectors_bad = 0;  ///< of the restarted: because of their vector
+  std::size_t restarted = 0;                        ///< pixels without usable history
+  std::size_t clipped = 0;                          ///< pixels whose history was moved
+  std::size_t vectors_bad = 0;                      ///< of the restarted: because of their vector
+  std::array<std::size_t, kRejectBits> rejected{};  ///< pixels with each bit of the plane `reject`
 };
 
 struct Accumulated {
@@ -98,13 +108,18 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
 History predict(const Present& present, const History& previous, const RecursiveParameters& recursive,
                 const RectifyParameters& rectify, Workers& workers);
 
+/// Keeps of the present what the tests of the next frame compare with.
+void remember_surfaces(History& history, const Present& present, const RecursiveParameters& recursive);
+
 /// What a caller does with one row, in place of the blend. `worker` names scratch space that no other row uses
 /// meanwhile.
 using RowPass = std::function<void(const AccumulateView& view, int y, const RowScratch& scratch, int worker)>;
 
 /// The history as accumulate() fetches and rectifies it, row by row, for accumulators that blend by rules of their own:
 /// `fetched` sees each row before rectification, `rectified` after it. The view has the present, and of the outputs
-/// only the planes of `diagnostics` that are wanted; of these `clip` is filled here. Counts: only `clipped`.
+/// only the planes of `diagnostics` that are wanted; of these `clip` is filled here. The tests of RejectParameters have
+/// been made, and the weight of the history is that of its trust; WeightParameters have no say. Counts: only `clipped`
+/// and `rejected`.
 AccumulateCounts visit_history(const Present& present, const History& previous, const RecursiveParameters& recursive,
                                const RectifyParameters& rectify, std::optional<glm::dvec2> jitter,
                                std::uint32_t restart_bit, const DiagnosticsWanted& wanted,

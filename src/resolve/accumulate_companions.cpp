@@ -55,12 +55,15 @@ CompanionPass view_companions(const AccumulateView& view, const Present& present
   return pass;
 }
 
-void accumulate_companions(const AccumulateView& v, int y, const RowScratch& s, const CompanionPass& pass) {
+void accumulate_companions(const AccumulateView& v, int y, const RowScratch& s, const RowPassView& passes,
+                           const CompanionPass& pass) {
   for (int x = 0; x < v.width; ++x) {
     const bool has_history = s.total[x] > 0;
     const float* result = v.out_color.origin + y * v.out_color.stride + 4 * x;
     const double a = has_history ? 1 - double(v.out_weight.origin[y * v.out_weight.stride + x]) : 0;
-    const CompanionMove move = find_move(v, pass.color, x, y, has_history, has_history ? s.history + 4 * x : result);
+    const unsigned standing = has_history ? standing_taps(passes, x, y) : 15;
+    const CompanionMove move =
+        find_move(v, pass.color, x, y, has_history, has_history ? s.history + 4 * x : result, standing);
     const auto blended = [&](const CompanionRows& plane, const glm::dvec4& history) {
       return history + (pixel_of(plane.present, x, y) - history) * a;
     };

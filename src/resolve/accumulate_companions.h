@@ -11,6 +11,7 @@
 #include "resolve/accumulate.h"
 #include "resolve/accumulate_row.h"
 #include "resolve/companion_move.h"
+#include "resolve/row_passes.h"
 
 namespace varve {
 
@@ -31,8 +32,9 @@ using Reconstruct = std::function<Plane<glm::vec4>(const Plane<glm::vec4>& sampl
 CompanionPass view_companions(const AccumulateView& view, const Present& present, const History& previous,
                               const Reconstruct& reconstruct, History& out);
 
-/// One row, after the color's: `scratch` still holds its rectified history, and view.out_color and view.out_weight are
-/// written.
-void accumulate_companions(const AccumulateView& view, int y, const RowScratch& scratch, const CompanionPass& pass);
+/// One row, after the color's and all of its row passes: `scratch` still holds its rectified history, and
+/// view.out_color and view.out_weight are written.
+void accumulate_companions(const AccumulateView& view, int y, const RowScratch& scratch, const RowPassView& passes,
+                           const CompanionPass& pass);
 
 }  // namespace varve

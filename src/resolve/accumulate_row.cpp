@@ -58,6 +58,7 @@ void copy_history(const AccumulateView& v, int y, const RowScratch& s) {
   }
 }
 
+template <bool weighed>
 void blend_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
   const float* weight = v.weight.origin + y * v.weight.stride;
   bool all_valid = true;
@@ -71,7 +72,7 @@ void blend_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& c
     double a = 1, total = w, spread = has_present ? 1 : 0;
     if (has_history) {
       const Float4 history = load(s.history + 4 * x);
-      a = w > 0 ? present_weight(v, double(s.total[x]), w) : 0.0;
+      a = w <= 0 ? 0.0 : weighed ? s.present_weight[x] : present_weight(v, double(s.total[x]), w);
       color = narrow(widen(history) + (widen(present) - widen(history)) * a);
       total = double(s.total[x]) + w;
       spread = double(s.spread[x]) * (1 - a) * (1 - a) + a * a;
@@ -129,8 +130,10 @@ void rectify_history(const AccumulateView& v, int y, const RowScratch& s, RowCou
 void blend_present(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts) {
   if (view.leave_present_out)
     copy_history(view, y, scratch);
+  else if (scratch.present_weight)
+    blend_row<true>(view, y, scratch, counts);
   else
-    blend_row(view, y, scratch, counts);
+    blend_row<false>(view, y, scratch, counts);
 }
 
 }  // namespace varve::VARVE_ISA

@@ -74,6 +74,7 @@ struct RowScratch {
   float* total;    // its weight sum; 0 where there is none
   float* spread;
   std::uint32_t* reject;
+  const double* present_weight = nullptr;  // of each pixel with a history; null: by alpha and its rule
 };
 
 // The three steps of a row, in running order. Between them stand row passes that need no processor of their own.

@@ -23,6 +23,24 @@ enum class AlphaRule { fixed, mean };
 /// What makes a pixel start over, besides leaving the data window.
 enum class Disocclusion { window, depth };
 
+/// Comparison of ids or stencils: a pixel of another id does not count; or the weight of history is the share of its
+/// four pixels that have the id (soft edges).
+enum class IdTest { off, hard, soft };
+
+/// What a failed test does: the pixel starts over; it starts over from a slightly blurred present; or it keeps its
+/// history but converges faster (Lopez).
+enum class OnReject { restart, blur, weight };
+
+/// Weight of history: by alpha, or by how much its luma agrees with that of the present (Pedersen 2016).
+enum class Feedback { fixed, luma };
+
+/// What is averaged: light; light over 1 + its luma (Karis); or its logarithm.
+enum class Weighing { none, luminance, logarithm };
+
+/// What is shown of what moves fast: the resolve, or the present blurred along the pixel's own vector or along the
+/// longest around (Pedersen 2016).
+enum class MotionBlur { off, own, neighbors };
+
 /// Reconstruction of the present from true sample positions.
 enum class SampleFilter { none, tent, gaussian, blackman_harris, mitchell };
 

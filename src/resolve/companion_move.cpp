@@ -164,9 +164,9 @@ glm::dvec4 apply_move(const AccumulateView& v, const CompanionMove& move, const 
 }
 
 CompanionMove find_move(const AccumulateView& v, const CompanionRows& color, int x, int y, bool has_history,
-                        const float* result) {
+                        const float* result, unsigned standing) {
   CompanionMove move;
-  if (has_history && color.history.origin) move.taps = find_taps(v, x, y);
+  if (has_history && color.history.origin) move.taps = find_taps(v, x, y, standing);
   const glm::dvec4 present = pixel_of(color.present, x, y), to(result[0], result[1], result[2], result[3]);
   const glm::dvec4 from = move.taps.wide    ? held_as_color(v, move.taps, color)
                           : move.taps.found ? inner_mean(move.taps, color)

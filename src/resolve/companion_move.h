@@ -47,9 +47,9 @@ struct CompanionMove {
 };
 
 /// Finds what was done to the color at a pixel. `result` (four floats) is its history after rectification; where there
-/// is no history, what became of the present.
+/// is no history, what became of the present. `standing`: see standing_taps().
 CompanionMove find_move(const AccumulateView& view, const CompanionRows& color, int x, int y, bool has_history,
-                        const float* result);
+                        const float* result, unsigned standing);
 
 /// The same done to another plane.
 glm::dvec4 apply_move(const AccumulateView& view, const CompanionMove& move, const CompanionRows& plane, int x, int y);

@@ -28,7 +28,8 @@ bool same_depth(float a, float b, double tolerance) {
 }
 
 /// The four around the position that pass the tests of the fetch, as a bilinear mean. Returns false when any failed.
-bool test_inner(const AccumulateView& v, const float* depth, double fx, double fy, CompanionTaps& t) {
+bool test_inner(const AccumulateView& v, const float* depth, double fx, double fy, unsigned standing,
+                CompanionTaps& t) {
   bool all = true;
   double share = 0, heaviest = 0;
   for (int j = 0; j < 2; ++j)
@@ -39,7 +40,7 @@ bool test_inner(const AccumulateView& v, const float* depth, double fx, double f
       if (!(w > 0)) continue;
       const bool inside = x >= 0 && y >= 0 && x < v.history_width && y < v.history_height;
       const bool passed =
-          inside && v.history_total.origin[y * v.history_total.stride + x] > 0 &&
+          inside && (standing >> (i + 2 * j) & 1u) && v.history_total.origin[y * v.history_total.stride + x] > 0 &&
           (!depth || same_depth(v.history_depth.origin[y * v.history_depth.stride + x], *depth, v.depth_tolerance));
       if (!passed) {
         all = false;
@@ -71,7 +72,7 @@ void set_wide(HistoryFilter filter, double fx, double fy, CompanionTaps& t) {
 
 }  // namespace
 
-CompanionTaps find_taps(const AccumulateView& v, int x, int y) {
+CompanionTaps find_taps(const AccumulateView& v, int x, int y, unsigned standing) {
   CompanionTaps t;
   const float* motion = v.motion.origin + y * v.motion.stride + 2 * x;
   const double hx = x + v.shift_x + double(motion[0]), hy = y + v.shift_y + double(motion[1]);
@@ -84,7 +85,7 @@ CompanionTaps find_taps(const AccumulateView& v, int x, int y) {
   const bool inside = t.x >= 1 && t.y >= 1 && t.x + 2 < v.history_width && t.y + 2 < v.history_height;
   bool plain = inside;
   for (int j = -1; plain && j <= 2; ++j) plain = v.history_rows_valid[t.y + j] != 0;
-  const bool all_passed = test_inner(v, depth, fx, fy, t);
+  const bool all_passed = test_inner(v, depth, fx, fy, standing, t);
   if (!plain || !all_passed || v.filter == HistoryFilter::bilinear) return t;
   t.nearest_x = t.x + (fx >= 0.5);
   t.nearest_y = t.y + (fy >= 0.5);

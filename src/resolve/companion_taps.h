@@ -5,8 +5,9 @@
 
 namespace varve {
 
-/// Taps of the history at a pixel, by the rules of the color's fetch; none found where it has no history.
-CompanionTaps find_taps(const AccumulateView& view, int x, int y);
+/// Taps of the history at a pixel, by the rules of the color's fetch and `standing` as from standing_taps(); none
+/// found where it has no history.
+CompanionTaps find_taps(const AccumulateView& view, int x, int y, unsigned standing);
 
 /// The history by the wide filter, and by the four nearest pixels. `taps.found`, and for the first `taps.wide`.
 glm::dvec4 wide_mean(const CompanionTaps& taps, const CompanionRows& plane);

@@ -154,7 +154,7 @@ History make_state(const Present& present, const RecursiveParameters& recursive)
   state.total = Plane<float>(w);
   state.spread = Plane<float>(w);
   state.rows_valid.resize(std::size_t(w.height()));
-  if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty()) state.depth = present.depth.clone();
+  remember_surfaces(state, present, recursive);
   return state;
 }
 

@@ -68,8 +68,8 @@ Plane<glm::vec4> color_to_write(const Plane<glm::vec4>& resolved, const ColorCon
 /// The resolved color in the stored types of its channels.
 void add_color(FileOutput& out, OutputPart& to, const Part& part, const ResolvedSubject& resolved,
                const ColorConversion* conversion, Workers& workers) {
-  const Plane<glm::vec4> converted = color_to_write(resolved.accumulated->history.color, conversion, workers);
-  const Plane<glm::vec4>& color = converted.empty() ? resolved.accumulated->history.color : converted;
+  const Plane<glm::vec4> converted = color_to_write(resolved.color(), conversion, workers);
+  const Plane<glm::vec4>& color = converted.empty() ? resolved.color() : converted;
   const Window& window = color.window();
   std::array<RawPlane*, 4> planes{};
   for (std::size_t k = 0; k < 4; ++k)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/reject.h"
+#include "reference/reject_reference.h"
 #include "resolve/sample_weights.h"
 
 namespace varve::reference {
@@ -61,7 +62,9 @@ Fetched fetch(const History& h, const Present& present, const RecursiveParameter
   const double fx = px - bx, fy = py - by;
 
   // The four around the position, each on its own merits.
-  const bool test_depth = p.disocclusion == Disocclusion::depth && !present.depth.empty() && !h.depth.empty();
+  const bool judged_later = p.reject.depth_slope > 0 || p.reject.on_reject == OnReject::weight;
+  const bool test_depth =
+      p.disocclusion == Disocclusion::depth && !judged_later && !present.depth.empty() && !h.depth.empty();
   double share = 0, youngest = std::numeric_limits<double>::infinity(), heaviest = 0;
   Color mean{};
   bool all = true, depth_failed = false;
@@ -187,6 +190,17 @@ double rectify_color(Color& color, const Color& present, const BoxBounds& b, con
   return scale > 0 ? length3(change) / scale : 0;
 }
 
+/// What the tests leave of a fetched history; returns its trust.
+double judge_history(Fetched& past, const Present& present, const History& previous, const RecursiveParameters& p,
+                     int x, int y) {
+  if (past.total <= 0) return 0;
+  const Judged judged = judge(present, previous, p, x, y);
+  if (judged.replaced) past.color = judged.color, past.total = judged.total, past.spread = judged.spread;
+  past.reject |= judged.bits;
+  if (judged.trust <= 1e-6 && p.reject.on_reject != OnReject::weight) past.total = 0;
+  return judged.trust;
+}
+
 /// The present at a pixel centre: its own sample, or the weighted samples around (math, section 5).
 Color present_at(const Present& present, SampleFilter filter, std::optional<glm::dvec2> jitter, int x, int y,
                  double& weight) {
@@ -226,7 +240,7 @@ Color weighed_present(const Present& present, SampleFilter filter, std::optional
 
 Pixel rectified_history(const Present& present, const History& previous, const RecursiveParameters& p,
                         const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
-                        int y, Color& fetched) {
+                        int y, Color& fetched, double& trust) {
   Pixel out;
   double w = 1;
   const Color now = present_at(present, p.sample_filter, jitter, x, y, w);
@@ -235,6 +249,7 @@ Pixel rectified_history(const Present& present, const History& previous, const R
     past.reject = restart_bit;
   else
     past = fetch(previous, present, p, x, y);
+  trust = previous.empty() ? 0 : judge_history(past, present, previous, p, x, y);
   out.reject = past.reject | (present.valid.at(x, y) > 0 ? 0u : unsigned(kRejectPresent));
   fetched = past.color;
   if (past.total <= 0) return out;
@@ -250,22 +265,34 @@ Pixel accumulate_pixel(const Present& present, const History& previous, const Re
                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
                        int y) {
   Color fetched;
-  const Pixel past = rectified_history(present, previous, p, rectify, jitter, restart_bit, x, y, fetched);
+  double trust = 0;
+  const Pixel past = rectified_history(present, previous, p, rectify, jitter, restart_bit, x, y, fetched, trust);
   double w = 1;
   const Color now = present_at(present, p.sample_filter, jitter, x, y, w);
   Pixel out = past;
+  const bool valid = present.valid.at(x, y) > 0, blurs = p.reject.on_reject == OnReject::blur && !previous.empty();
   if (past.total <= 0) {
-    out.color = now;
+    out.color = blurs ? softened(present, x, y) : now;
     out.total = w;
-    out.spread = present.valid.at(x, y) > 0 ? 1 : 0;
+    out.spread = !valid ? 0 : blurs ? 36.0 / 256 : 1;
     return out;
   }
-  const double steady = p.alpha * w / (1 - p.alpha + p.alpha * w);
-  const double a = w > 0 ? (p.alpha_rule == AlphaRule::fixed ? steady : std::max(steady, w / (past.total + w))) : 0;
+  bool reactive = false;
+  double total = past.total;
+  const double share =
+      weight_of_present(present, p, rectify.gamma, now, fetched, past.color, trust, w, total, reactive, x, y);
+  const double a = w > 0 ? share : 0;
+  if (reactive) out.reject |= kRejectReactive;
   for (std::size_t k = 0; k < 4; ++k) out.color[k] = (1 - a) * past.color[k] + a * now[k];
-  out.total = past.total + w;
+  if (p.weight.weighing == Weighing::logarithm && valid)
+    for (std::size_t k = 0; k < 3; ++k) out.color[k] = log_blend(past.color[k], now[k], a, p.weight.exposure);
+  out.total = total + w;
   out.spread = past.spread * (1 - a) * (1 - a) + a * a;
   out.weight = 1 - a;
+  if (!blurs) return out;
+  const Color soft = softened(present, x, y);
+  for (std::size_t k = 0; k < 4; ++k) out.color[k] = trust * out.color[k] + (1 - trust) * soft[k];
+  if (valid) out.spread = trust * trust * out.spread + (1 - trust) * (1 - trust) * 36 / 256;
   return out;
 }
 
@@ -273,7 +300,8 @@ Pixel predict_pixel(const Present& present, const History& previous, const Recur
                     const RectifyParameters& rectify, int x, int y) {
   Pixel out;
   if (previous.empty()) return out;
-  const Fetched past = fetch(previous, present, p, x, y);
+  Fetched past = fetch(previous, present, p, x, y);
+  judge_history(past, present, previous, p, x, y);
   if (past.total <= 0) return out;
   out.color = past.color;
   out.total = past.total;

@@ -33,8 +33,10 @@ SidePixel side_pixel(const Present& present, const History& beyond, const Recurs
                      std::optional<glm::dvec2> jitter, unsigned restart_bit, int x, int y) {
   SidePixel out;
   Color fetched{};
-  out.strict = rectified_history(present, beyond, p, rectify, jitter, restart_bit, x, y, fetched);
+  double trust = 0;
+  out.strict = rectified_history(present, beyond, p, rectify, jitter, restart_bit, x, y, fetched, trust);
   Pixel& side = out.strict;
+  side.total *= trust;
   if (side.total > 0 && two_sided.clip_discount) {
     double d2 = 0;
     for (std::size_t k = 0; k < 3; ++k) d2 += (side.color[k] - fetched[k]) * (side.color[k] - fetched[k]);
