@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "diagnose/aov.h"
 #include "plan/cost.h"
+#include "plan/describe_rectify.h"
 
 namespace varve {
 namespace {
@@ -40,6 +41,8 @@ void check_possible(const SequenceInfo& info, const Parameters& parameters) {
                       "the depth test needs a depth, and " + layer_text(subject) +
                           " has none; name it with --map depth=CHANNEL or --depth-file FILE, or "
                           "give --disocclusion window");
+  const std::string clash = conflict(parameters.rectify, parameters.recursive);
+  if (!clash.empty()) throw Failure(ExitCode::usage, clash);
   if (parameters.recursive.sample_filter == SampleFilter::none || info.frames_with_jitter == int(info.frames.size()))
     return;
   const std::string known = info.frames_with_jitter == 0
@@ -144,16 +147,12 @@ class Planner {
       add("rectify", false, "no history");
       return;
     }
-    const std::string edge = std::to_string(r.window), size = edge + "x" + edge;
-    const std::string space = r.space == BoxSpace::ycocg ? "YCoCg" : "RGB";
-    const std::string gamma = "gamma " + short_number(r.gamma);
-    const std::string kind = r.box == Box::minmax     ? "least and greatest"
-                             : r.box == Box::variance ? "variance, " + gamma
-                                                      : "variance, " + gamma + ", cut by least and greatest";
-    add("neighborhood box", true, "what history may say: " + kind + ", of " + size + " pixels in " + space);
-    add("rectify", true,
-        std::string(r.rule == BoxRule::clip ? "history is clipped towards the " : "history is clamped, anchor ") +
-            (r.anchor == BoxAnchor::present ? "present" : "mean") + ", which removes what is no longer there");
+    add("neighborhood box", true, "what history may say: " + describe_box(r));
+    add("rectify", true, describe_rule(r));
+    if (r.moments == WindowMoments::direct && r.window > 7)
+      plan_.notes.push_back("each pixel looks at " + std::to_string(r.window * r.window) +
+                            " neighbors, which is slow; --moments separable gives the variance box of that window at a "
+                            "cost that does not grow with it");
   }
 
   void blend() {

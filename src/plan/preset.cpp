@@ -13,7 +13,8 @@ constexpr Preset kPresets[] = {
      "Variance clipping: sharp history along the longest vector, held to the noise of the present.",
      "dilation=longest alpha=0.1 alpha-rule=mean history-filter=catmull-rom dering=on disocclusion=window "
      "sample-filter=none "
-     "box=variance gamma=1 window=3 rule=clip anchor=present space=rgb"},
+     "box=variance gamma=1 window=3 moments=direct rule=clip anchor=present space=rgb hull-passes=64 "
+     "clip-discount=off"},
 };
 
 }  // namespace

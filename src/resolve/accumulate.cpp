@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "resolve/accumulate_row.h"
+#include "resolve/box_space.h"
+#include "resolve/rectify_shapes.h"
 #include "resolve/sample_weights.h"
 
 namespace varve {
@@ -27,23 +29,6 @@ template <class T>
 PixelRows<float> write_rows(Plane<T>& plane) {
   if (plane.empty()) return {nullptr, 0};
   return {floats(plane), plane.stride() * std::ptrdiff_t(sizeof(T) / sizeof(float))};
-}
-
-/// The neighborhood's samples in the space of the box, border and all.
-Plane<glm::vec4> rotate_to_ycocg(const Plane<glm::vec4>& color, Workers& workers) {
-  const Window& w = color.window();
-  const int b = color.border();
-  Plane<glm::vec4> out(w, b);
-  workers.for_rows(w.y0 - b, w.y1 + b, [&](int y) {
-    const glm::vec4* from = color.row(y) - b;
-    glm::vec4* to = out.row(y) - b;
-    for (int x = 0; x < w.width() + 2 * b; ++x) {
-      const glm::vec4 c = from[x];
-      const float rb = c.r * 0.25f + c.b * 0.25f;
-      to[x] = {rb + c.g * 0.5f, c.r * 0.5f - c.b * 0.5f, c.g * 0.5f - rb, c.a};
-    }
-  });
-  return out;
 }
 
 /// The steps of a row, as compiled for one processor.
@@ -87,9 +72,10 @@ History make_history(const Window& w) {
 
 /// The present as the kernel reads it, and the planes made for that.
 struct PresentView {
-  WeighedPresent weighed;    // what is blended in where samples are weighed by their position
-  Plane<glm::vec4> rotated;  // the neighborhood in the space of the box
-  Plane<glm::vec2> at_rest;  // without vectors every pixel stays where it is
+  WeighedPresent weighed;     // what is blended in where samples are weighed by their position
+  BoxSpaceMap space;          // of the box
+  Plane<glm::vec4> in_space;  // the neighborhood in the space of the box
+  Plane<glm::vec2> at_rest;   // without vectors every pixel stays where it is
   std::vector<std::uint8_t> rows_valid;
 };
 
@@ -99,14 +85,16 @@ PresentView view_present(AccumulateView& v, const Present& present, const Rectif
   PresentView made;
   if (sample_filter != SampleFilter::none && jitter)
     made.weighed = weigh_samples(present, sample_filter, *jitter, workers);
-  if (rectify.box != Box::none && rectify.space == BoxSpace::ycocg)
-    made.rotated = rotate_to_ycocg(present.color, workers);
+  if (rectify.box != Box::none) {
+    made.space = box_space_map(rectify.space, present, workers);
+    made.in_space = plane_in_box_space(made.space, present.color, workers);
+  }
   if (present.motion.empty()) made.at_rest = Plane<glm::vec2>(w, 0, glm::vec2(0.0f));
 
   v.width = w.width();
   v.height = w.height();
   v.color = read_rows(made.weighed.color.empty() ? present.color : made.weighed.color);
-  v.neighbors = read_rows(made.rotated.empty() ? present.color : made.rotated);
+  v.neighbors = read_rows(made.in_space.empty() ? present.color : made.in_space);
   v.weight = read_rows(present.valid);
   v.motion = read_rows(present.motion.empty() ? made.at_rest : present.motion);
   v.sample_weight = read_rows(made.weighed.sample_weight);
@@ -162,28 +150,68 @@ void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const
   v.gamma = rectify.gamma;
 }
 
-AccumulateCounts run_rows(const AccumulateView& v, Isa isa, Workers& workers) {
-  const RowKernel kernel = kernel_for(isa);
-  std::vector<Scratch> scratch;
-  for (int i = 0; i < workers.count(); ++i) scratch.emplace_back(v.width);
-  std::vector<RowCounts> counts(std::size_t(workers.count()));
-  constexpr int kBand = 8;  // rows: neighbors share what is in the cache
-  workers.for_each(std::size_t((v.height + kBand - 1) / kBand), [&](std::size_t band, int worker) {
-    const RowScratch rows = scratch[std::size_t(worker)].view();
-    const int end = std::min(v.height, int(band + 1) * kBand);
-    for (int y = int(band) * kBand; y < end; ++y) {
-      kernel.fetch_history(v, y, rows);
-      kernel.rectify_history(v, y, rows, counts[std::size_t(worker)]);
-      kernel.blend_present(v, y, rows, counts[std::size_t(worker)]);
-    }
-  });
-  AccumulateCounts sum;
-  for (const RowCounts& c : counts) {
-    sum.restarted += c.restarted;
-    sum.clipped += c.clipped;
-    sum.vectors_bad += c.vectors_bad;
+/// Rows [begin, end) through the steps; what the row kernel has no code for goes through `shapes` instead.
+class RowRunner {
+ public:
+  RowRunner(const AccumulateView& v, Isa isa, const ShapeRules* shapes, Workers& workers)
+      : v_(v), kernel_(kernel_for(isa)), shapes_(shapes), workers_(workers), room_(std::size_t(workers.count())) {
+    for (int i = 0; i < workers.count(); ++i) scratch_.emplace_back(v.width);
+    counts_.resize(std::size_t(workers.count()));
   }
-  return sum;
+
+  AccumulateCounts all_rows() {
+    if (!shapes_) {
+      run(0, v_.height);
+    } else {
+      prepare_frame(v_, *shapes_, contents_, workers_);
+      const int rows = band_rows(*shapes_, v_.height);
+      for (int begin = 0; begin < v_.height; begin += rows) {
+        const int end = std::min(v_.height, begin + rows);
+        prepare_band(v_, *shapes_, begin, end, contents_, workers_);
+        run(begin, end);
+      }
+    }
+    AccumulateCounts sum;
+    for (const RowCounts& c : counts_) {
+      sum.restarted += c.restarted;
+      sum.clipped += c.clipped;
+      sum.vectors_bad += c.vectors_bad;
+    }
+    return sum;
+  }
+
+ private:
+  void run(int begin, int end) {
+    constexpr int kBand = 8;  // rows: neighbors share what is in the cache
+    workers_.for_each(std::size_t((end - begin + kBand - 1) / kBand), [&](std::size_t band, int worker) {
+      const std::size_t mine = std::size_t(worker);
+      const RowScratch rows = scratch_[mine].view();
+      const int first = begin + int(band) * kBand;
+      for (int y = first; y < std::min(end, first + kBand); ++y) {
+        kernel_.fetch_history(v_, y, rows);
+        if (shapes_)
+          rectify_shapes(v_, *shapes_, contents_, y, rows, room_[mine], counts_[mine]);
+        else
+          kernel_.rectify_history(v_, y, rows, counts_[mine]);
+        kernel_.blend_present(v_, y, rows, counts_[mine]);
+      }
+    });
+  }
+
+  const AccumulateView& v_;
+  RowKernel kernel_;
+  const ShapeRules* shapes_;
+  Workers& workers_;
+  WindowContents contents_;
+  std::vector<Scratch> scratch_;
+  std::vector<ShapeScratch> room_;
+  std::vector<RowCounts> counts_;
+};
+
+AccumulateCounts run_rows(const AccumulateView& v, Isa isa, const RectifyParameters& rectify,
+                          const RecursiveParameters& recursive, const PresentView& made, Workers& workers) {
+  const ShapeRules shapes{rectify, made.space, recursive.alpha, made.weighed.color.empty()};
+  return RowRunner(v, isa, needs_shapes(rectify) ? &shapes : nullptr, workers).all_rows();
 }
 
 }  // namespace
@@ -199,14 +227,18 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
   view_output(v, out, wanted);
   view_choices(v, recursive, rectify);
   v.restart_bit = restart_bit;
-  out.counts = run_rows(v, isa, workers);
+  out.counts = run_rows(v, isa, rectify, recursive, made, workers);
   if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty())
     out.history.depth = present.depth.clone();
   return out;
 }
 
 History predict(const Present& present, const History& previous, const RecursiveParameters& recursive,
-                const RectifyParameters& rectify, Workers& workers) {
+                const RectifyParameters& asked, Workers& workers) {
+  RectifyParameters rectify = asked;
+  rectify.anchor = BoxAnchor::mean;
+  // What one pixel counts in a bell or a pyramid is not known afterwards; in the plain window of that size it is.
+  if (rectify.moments != WindowMoments::direct) rectify.moments = WindowMoments::separable;
   Accumulated out{make_history(present.color.window()), {}, {}};
   if (present.color.window().empty()) return std::move(out.history);
   AccumulateView v{};
@@ -214,9 +246,8 @@ History predict(const Present& present, const History& previous, const Recursive
   view_history(v, present, previous, recursive.disocclusion);
   view_output(v, out, {});
   view_choices(v, recursive, rectify);
-  v.anchor = BoxAnchor::mean;
   v.leave_present_out = true;
-  run_rows(v, Isa::automatic, workers);
+  run_rows(v, Isa::automatic, rectify, recursive, made, workers);
   return std::move(out.history);
 }
 
