@@ -4,6 +4,7 @@
 #include <set>
 
 #include "diagnose/aov.h"
+#include "resolve/rectify_shapes.h"
 
 namespace varve {
 namespace {
@@ -23,6 +24,42 @@ constexpr CodecCost kNone{0.2, 0.9}, kLight{1.5, 3}, kZip{1.9, 6}, kPiz{5, 11}, 
 // vectors, depth test and diagnostics are set by their traffic and not measured yet.
 constexpr double kConvert = 1.5, kSanitize = 1.6, kMotion = 1.1, kInvert = 12, kDilate = 8.5, kHistory = 22,
                  kDepthTest = 1, kSampleWeights = 20, kBox = 28, kBlend = 8, kDiagnostic = 0.5;
+
+/// Nanoseconds per pixel to hold history to its neighborhood.
+double box_cost(const RectifyParameters& r) {
+  if (r.box == Box::none) return 0;
+  if (!needs_shapes(r)) return kBox * std::max(1, r.window) / 3;
+  const double log = r.space == BoxSpace::log ? 120 : 0;
+  if (r.moments == WindowMoments::separable) return log + 90;
+  if (r.moments == WindowMoments::gaussian) return log + 140;
+  if (r.moments == WindowMoments::pyramid) return log + 130;
+  const double neighbors = double(r.window) * r.window / 9;  // of 3x3
+  switch (r.box) {
+    case Box::kdop7:
+    case Box::kdop13:
+    case Box::rounded:
+    case Box::dynamic4:
+      return log + 200 * neighbors;
+    case Box::pca:
+    case Box::ellipsoid:
+      return log + 350 + 100 * neighbors;
+    case Box::hull:
+      return log + 200 + 150 * neighbors;
+    default:
+      return log + 100 * neighbors;
+  }
+}
+
+/// Bytes that window moments need while a frame is at work.
+std::size_t window_bytes(const RectifyParameters& r, const Window& window) {
+  if (r.box == Box::none || r.moments == WindowMoments::direct) return 0;
+  const bool cut = r.box != Box::variance;
+  const std::size_t width = std::size_t(window.width());
+  const std::size_t rows = std::size_t(std::min(window.height(), kWindowBandRows) + r.window - 1);
+  if (r.moments == WindowMoments::pyramid) return window.pixels() * 24 + (cut ? rows * width * sizeof(Extremes) : 0);
+  return rows * width * (r.box == Box::minmax && !r.clip_discount ? 0 : sizeof(Moments)) +
+         (cut ? rows * width * sizeof(Extremes) : 0);
+}
 
 CodecCost cost_of(Compression compression) {
   switch (compression) {
@@ -61,11 +98,13 @@ std::size_t bytes_of(const Part& part) {
   return bytes;
 }
 
-std::size_t pixels_of(const SequenceInfo& info, const Subject& subject) {
+Window window_of(const SequenceInfo& info, const Subject& subject) {
   for (const std::optional<ChannelRef>& channel : subject.color)
-    if (channel) return part_of(info, *channel).data_window.pixels();
-  return 0;
+    if (channel) return part_of(info, *channel).data_window;
+  return {};
 }
+
+std::size_t pixels_of(const SequenceInfo& info, const Subject& subject) { return window_of(info, subject).pixels(); }
 
 using PartKey = std::pair<int, int>;
 
@@ -113,8 +152,10 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
   for (const Subject& subject : info.first.subjects) {
     const std::size_t pixels = pixels_of(info, subject);
     histories += pixels * (2 * (16 + 8) + (depth_test ? 4 : 0));  // color, count and weight; depth of the last frame
+    const bool in_space = parameters.rectify.box != Box::none && parameters.rectify.space != BoxSpace::rgb;
     at_work = std::max(at_work, pixels * (16 + (plan.use_motion ? 8 : 0) + (plan.use_depth ? 4 : 0) +
-                                          diagnostic_bytes_per_pixel(output)));
+                                          (in_space ? 16 : 0) + diagnostic_bytes_per_pixel(output)) +
+                                    window_bytes(parameters.rectify, window_of(info, subject)));
   }
   return kBaseBytes + raw + histories + at_work;
 }
@@ -144,7 +185,7 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
   if (plan.use_motion && parameters.motion.dilation != Dilation::none) per_pixel += kDilate;
   if (recursive.disocclusion == Disocclusion::depth) per_pixel += kDepthTest;
   if (recursive.sample_filter != SampleFilter::none) per_pixel += kSampleWeights;
-  if (parameters.rectify.box != Box::none) per_pixel += kBox * std::max(1, parameters.rectify.window) / 3;
+  per_pixel += box_cost(parameters.rectify);
   for (const Subject& subject : info.first.subjects) {
     const double motion = !plan.use_motion ? 0 : subject.backward ? kMotion : subject.forward ? kMotion + kInvert : 0;
     nanoseconds += double(pixels_of(info, subject)) * (per_pixel + motion);

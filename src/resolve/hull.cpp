@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <glm/geometric.hpp>
 
@@ -12,6 +13,7 @@ namespace varve {
 namespace {
 
 constexpr double kFloatRounding = 1.0 / (1 << 24);
+constexpr double kFloatQuantum = std::numeric_limits<float>::denorm_min();  // no rounding is finer
 constexpr double kTolerance = 1e-8;
 
 /// A sample in the frame of the segment: (q, r) across it, p along it.
@@ -60,7 +62,7 @@ void make_hull(const Samples& samples, Hull& hull) {
     hull.size = std::max(hull.size, glm::length(y));
     largest = std::max(largest, color_size(glm::dvec3(samples[i])));
   }
-  hull.floor = std::max(1e-6 * hull.size, 4 * kFloatRounding * largest);
+  hull.floor = std::max({1e-6 * hull.size, 4 * kFloatRounding * largest, 2 * kFloatQuantum});
 }
 
 // The height of the hull's upper side over the origin of the (q, r) plane: a linear program in three variables, solved

@@ -22,17 +22,18 @@ Moments moments_of(const Samples& samples) {
   Moments m;
   m.n = double(samples.size());
   if (samples.empty()) return m;
+  const glm::dvec4 pivot = samples.front();  // constant in, the same constant out
+  glm::dvec4 sum(0), squares(0), rest(0);
+  for (const glm::dvec4& c : samples) sum += c - pivot;
+  const glm::dvec4 mean = pivot + sum / m.n;
+  for (const glm::dvec4& c : samples) {
+    const glm::dvec4 d = c - mean;
+    squares += d * d;
+    rest += d;
+  }
   for (int k = 0; k < 4; ++k) {
-    const double pivot = samples.front()[k];  // constant in, the same constant out
-    double sum = 0, rest = 0;
-    for (const glm::dvec4& c : samples) sum += c[k] - pivot;
-    m.mean[k] = pivot + sum / m.n;
-    for (const glm::dvec4& c : samples) {
-      const double d = c[k] - m.mean[k];
-      m.m2[k] += d * d;
-      rest += d;
-    }
-    m.m2[k] = std::max(0.0, m.m2[k] - rest * rest / m.n);  // what rounding of the mean has added
+    m.mean[k] = mean[k];
+    m.m2[k] = std::max(0.0, squares[k] - rest[k] * rest[k] / m.n);  // less what rounding of the mean has added
   }
   return m;
 }

@@ -20,6 +20,8 @@ constexpr double kFloor = 1e-6;  // of the mean's size: what rounding may do to 
 
 bool by_variance(Box box) { return box == Box::variance || box == Box::variance_minmax; }
 bool by_extremes(Box box) { return box == Box::minmax || box == Box::variance_minmax; }
+/// Least and greatest alone need no moments, unless for the noise that a discount is measured by.
+bool needs_moments(const RectifyParameters& r) { return r.box != Box::minmax || r.clip_discount; }
 /// Boxes of samples at fixed places around the pixel, whatever the window.
 bool by_place(Box box) { return box == Box::rounded || box == Box::dynamic4; }
 
@@ -124,23 +126,28 @@ class PixelRectifier {
     glm::dvec3 nearest(const glm::dvec3& h) const { return hull.nearest(h); }
   };
 
+  /// False when no neighbor counts.
   bool look_around(int x, int y) {
-    bool one_by_one = r_.moments == WindowMoments::direct || by_place(r_.box);
-    if (!one_by_one) {
+    if (r_.moments == WindowMoments::direct || by_place(r_.box)) return look_at_each(x, y);
+    if (by_extremes(r_.box)) here_.extremes = contents_.extremes.at(x, y);
+    if (!needs_moments(r_))
+      here_.moments.n = here_.extremes.low[0] <= here_.extremes.high[0] ? 1 : 0;
+    else
       here_.moments =
           contents_.pyramid.levels.empty() ? contents_.moments.at(x, y) : sample_pyramid(contents_.pyramid, v_, x, y);
-      if (by_extremes(r_.box)) here_.extremes = contents_.extremes.at(x, y);
-      if (!(here_.moments.n > 0)) return false;
-      if (v_.leave_present_out && v_.weight.origin[y * v_.weight.stride + x] > 0) {
-        const glm::dvec4 own = color_at(v_.neighbors, x, y);
-        one_by_one = !take_out(here_.moments, own) || (by_extremes(r_.box) && at_an_extreme(here_.extremes, own));
-      }
-    }
-    if (one_by_one) {
-      gather_samples(v_, by_place(r_.box) ? 1 : r_.window / 2, x, y, s_.samples);
-      here_.moments = moments_of(s_.samples);
-      here_.extremes = extremes_of(s_.samples);
-    }
+    if (!(here_.moments.n > 0)) return false;
+    if (!v_.leave_present_out || !(v_.weight.origin[y * v_.weight.stride + x] > 0)) return true;
+    const glm::dvec4 own = color_at(v_.neighbors, x, y);
+    if ((needs_moments(r_) && !take_out(here_.moments, own)) ||
+        (by_extremes(r_.box) && at_an_extreme(here_.extremes, own)))
+      return look_at_each(x, y);
+    return true;
+  }
+
+  bool look_at_each(int x, int y) {
+    gather_samples(v_, by_place(r_.box) ? 1 : r_.window / 2, x, y, s_.samples);
+    here_.moments = moments_of(s_.samples);
+    if (r_.box != Box::variance && r_.box != Box::ellipsoid) here_.extremes = extremes_of(s_.samples);
     return here_.moments.n > 0;
   }
 
@@ -212,7 +219,7 @@ bool needs_shapes(const RectifyParameters& r) {
 int band_rows(const ShapeRules& rules, int height) {
   const bool slides = rules.rectify.moments == WindowMoments::separable ||
                       rules.rectify.moments == WindowMoments::gaussian || by_extremes(rules.rectify.box);
-  return rules.rectify.moments != WindowMoments::direct && slides ? 256 : height;
+  return rules.rectify.moments != WindowMoments::direct && slides ? kWindowBandRows : height;
 }
 
 void prepare_frame(const AccumulateView& view, const ShapeRules& rules, WindowContents& contents, Workers& workers) {
@@ -224,7 +231,7 @@ void prepare_band(const AccumulateView& view, const ShapeRules& rules, int begin
                   Workers& workers) {
   const RectifyParameters& r = rules.rectify;
   if (r.moments == WindowMoments::direct || by_place(r.box)) return;
-  if (r.moments != WindowMoments::pyramid)
+  if (r.moments != WindowMoments::pyramid && needs_moments(r))
     gather_band(view, r.window, slid_widths(r.window, r.moments), begin, end, contents.moments, workers);
   if (by_extremes(r.box)) gather_band(view, r.window, {r.window, 1, 1}, begin, end, contents.extremes, workers);
 }

@@ -34,7 +34,11 @@ struct ShapeScratch {
   Hull hull;
 };
 
-/// How many rows go together, so that the rows that two bands both need cost little; and the preparation of a band.
+/// Rows of a band: what two bands both need is window - 1 rows, so a band must be large against that, and small enough
+/// that 96 bytes a pixel of it are no burden (at most 57 MB for 1920 pixels across).
+inline constexpr int kWindowBandRows = 256;
+
+/// How many rows go together; what is needed once a frame, and once a band.
 int band_rows(const ShapeRules& rules, int height);
 void prepare_frame(const AccumulateView& view, const ShapeRules& rules, WindowContents& contents, Workers& workers);
 void prepare_band(const AccumulateView& view, const ShapeRules& rules, int begin, int end, WindowContents& contents,

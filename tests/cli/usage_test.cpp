@@ -83,7 +83,7 @@ TEST(Usage, OneThingWrong) {
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--alpha=0.1x"}, "0.1x"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--alpha=nan"}, "above 0 up to 1"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--gamma", "inf"}, "from 0 to 100"},
-      {{"resolve", "in.####.exr", "-o", "out.####.exr", "--window", "4"}, "3, 5, 7"},
+      {{"resolve", "in.####.exr", "-o", "out.####.exr", "--window", "4"}, "an odd whole number from 3 to 63"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--frames="}, "--frames"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--frames", "10-"}, "10-"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--preset", "salvo"}, "salvo"},
