@@ -96,8 +96,7 @@ Value<Parameters> number(At at, Range range) {
 template <class At>
 Value<Parameters> odd_number(At at, Range range) {
   Value<Parameters> value = number_value<Parameters>(at, range);
-  value.allowed.insert(2, "n odd");  // "an odd whole number from ..."
-  value.allowed.erase(1, 1);
+  value.allowed = "an odd" + value.allowed.substr(1);  // "a whole number from ..."
   value.read = [read = value.read](Parameters& parameters, std::string_view text) {
     return !text.empty() && (text.back() - '0') % 2 == 1 && read(parameters, text);
   };

@@ -33,7 +33,7 @@ bool tap(const AccumulateView& v, int x, int y, double tap_x, double tap_y, glm:
 
 }  // namespace
 
-double AxisBox::exit(const glm::dvec3& g, const glm::dvec3& h) const {
+double AxisBox::crossing(const glm::dvec3& g, const glm::dvec3& h) const {
   double t = 1;
   for (int k = 0; k < 3; ++k) {
     if (h[k] > high[k]) t = std::min(t, (high[k] - g[k]) / (h[k] - g[k]));

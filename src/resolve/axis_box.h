@@ -13,7 +13,7 @@ struct AxisBox {
   glm::dvec4 low{0}, high{0}, mean{0};
 
   /// Share of the way from g (inside) to h that lies inside, up to 1.
-  double exit(const glm::dvec3& g, const glm::dvec3& h) const;
+  double crossing(const glm::dvec3& g, const glm::dvec3& h) const;
   glm::dvec3 nearest(const glm::dvec3& h) const;
   glm::dvec3 center() const { return glm::dvec3(low) * 0.5 + glm::dvec3(high) * 0.5; }
 };

@@ -21,7 +21,7 @@ ColorEllipsoid make_ellipsoid(const Samples& samples, const Moments& moments, do
   return e;
 }
 
-double ColorEllipsoid::exit(const glm::dvec3& g, const glm::dvec3& h) const {
+double ColorEllipsoid::crossing(const glm::dvec3& g, const glm::dvec3& h) const {
   const glm::dvec3 to = frame.to_axes(h) / radii;
   if (glm::dot(to, to) <= 1) return 1;
   const glm::dvec3 from = frame.to_axes(g) / radii, way = to - from;

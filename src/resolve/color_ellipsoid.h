@@ -9,7 +9,7 @@ struct ColorEllipsoid {
   PrincipalAxes frame;
   glm::dvec3 radii{0};  // along the axes
 
-  double exit(const glm::dvec3& g, const glm::dvec3& h) const;
+  double crossing(const glm::dvec3& g, const glm::dvec3& h) const;
   /// Along the normal of the surface, found by Newton's method on the reciprocal of the distance function: concave, so
   /// the steps never pass the root.
   glm::dvec3 nearest(const glm::dvec3& h) const;

@@ -69,7 +69,7 @@ void make_hull(const Samples& samples, Hull& hull) {
 // by refining a triangle ("portal") around that origin with the sample farthest above it. (Simplex with the steepest
 // support; Snethen's portal refinement, XenoCollide 2008, is its kin.) The triangle of the first pass stands for a
 // sample widened by the floor, and so does every other: flat, line-like and repeated samples need no case of their own.
-Hull::Exit Hull::exit(const glm::dvec3& g, const glm::dvec3& h, int most_passes) const {
+Hull::Crossing Hull::crossing(const glm::dvec3& g, const glm::dvec3& h, int most_passes) const {
   const glm::dvec3 way = h - g, at = g - origin;
   const double distance = glm::length(way);
   if (!(distance > floor)) return {1, 1, 0};

@@ -19,11 +19,11 @@ struct Hull {
 
   /// Where a segment from g (inside) to h leaves the hull, as share of the way: at least `low` of it lies inside the
   /// widened hull, no more than `high` inside the exact one plus the floor. high - low <= 1e-8 unless passes ran out.
-  struct Exit {
+  struct Crossing {
     double low = 0, high = 1;
     int passes = 0;
   };
-  Exit exit(const glm::dvec3& g, const glm::dvec3& h, int most_passes) const;
+  Crossing crossing(const glm::dvec3& g, const glm::dvec3& h, int most_passes) const;
 
   /// The point of the hull nearest to h; h itself when it is not farther than the floor.
   glm::dvec3 nearest(const glm::dvec3& h) const;

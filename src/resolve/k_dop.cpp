@@ -120,7 +120,7 @@ KDop make_k_dop(const Samples& samples, int directions, double floor) {
   return dop;
 }
 
-double KDop::exit(const glm::dvec3& g, const glm::dvec3& h) const {
+double KDop::crossing(const glm::dvec3& g, const glm::dvec3& h) const {
   double t = 1;
   for (std::size_t i = 0; i < std::size_t(directions); ++i) {
     const double from = glm::dot(kDirections[i], g), to = glm::dot(kDirections[i], h);

@@ -15,7 +15,7 @@ struct KDop {
   int directions = 7;
   std::array<double, 13> low{}, high{};
 
-  double exit(const glm::dvec3& g, const glm::dvec3& h) const;
+  double crossing(const glm::dvec3& g, const glm::dvec3& h) const;
   /// By the dual active set method (Goldfarb and Idnani 1983, with the identity as matrix); at most three faces are
   /// active at a time.
   glm::dvec3 nearest(const glm::dvec3& h) const;

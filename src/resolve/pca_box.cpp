@@ -18,7 +18,7 @@ PcaBox make_pca_box(const Samples& samples, const Moments& moments, double floor
   return box;
 }
 
-double PcaBox::exit(const glm::dvec3& g, const glm::dvec3& h) const {
+double PcaBox::crossing(const glm::dvec3& g, const glm::dvec3& h) const {
   const glm::dvec3 from = frame.to_axes(g), to = frame.to_axes(h);
   double t = 1;
   for (int k = 0; k < 3; ++k) {

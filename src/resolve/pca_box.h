@@ -10,7 +10,7 @@ struct PcaBox {
   PrincipalAxes frame;
   glm::dvec3 low{0}, high{0};  // along the axes
 
-  double exit(const glm::dvec3& g, const glm::dvec3& h) const;
+  double crossing(const glm::dvec3& g, const glm::dvec3& h) const;
   glm::dvec3 nearest(const glm::dvec3& h) const;
   glm::dvec3 center() const { return frame.from_axes((low + high) * 0.5); }
 };

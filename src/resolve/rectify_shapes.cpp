@@ -122,7 +122,7 @@ class PixelRectifier {
   struct CappedHull {
     const Hull& hull;
     int passes;
-    double exit(const glm::dvec3& g, const glm::dvec3& h) const { return hull.exit(g, h, passes).low; }
+    double crossing(const glm::dvec3& g, const glm::dvec3& h) const { return hull.crossing(g, h, passes).low; }
     glm::dvec3 nearest(const glm::dvec3& h) const { return hull.nearest(h); }
   };
 

@@ -1,4 +1,4 @@
-// How history outside a shape is brought onto it, for any shape that knows its exit and its nearest point.
+// How history outside a shape is brought onto it, for any shape that knows its crossing and its nearest point.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace varve {
 struct Interval {
   double low = 0, high = 0;
 
-  double exit(double g, double h) const {
+  double crossing(double g, double h) const {
     if (h > high) return std::max(0.0, (high - g) / (h - g));
     return h < low ? std::max(0.0, (low - g) / (h - g)) : 1;
   }
@@ -28,7 +28,7 @@ glm::dvec4 bring_onto(const Shape& shape, const Interval& alpha, BoxRule rule, c
                       const glm::dvec4& target, bool held) {
   if (rule != BoxRule::clip) return glm::dvec4(shape.nearest(glm::dvec3(h)), alpha.nearest(h.a));
   const glm::dvec4 g(held ? glm::dvec3(target) : shape.nearest(glm::dvec3(target)), alpha.nearest(target.a));
-  const double t = std::min(shape.exit(glm::dvec3(g), glm::dvec3(h)), alpha.exit(g.a, h.a));
+  const double t = std::min(shape.crossing(glm::dvec3(g), glm::dvec3(h)), alpha.crossing(g.a, h.a));
   return t < 1 ? g + (h - g) * t : h;
 }
 

@@ -192,6 +192,40 @@ TEST_F(Resolve, WithoutVectorsOnlyWhenToldSo) {
   EXPECT_EQ(run({"--convention", "none"}).code, 0);
 }
 
+TEST_F(Resolve, EveryBoxRuleAndWindowIsReachedFromTheCommandLine) {
+  std::vector<std::string> pictures;
+  for (const std::vector<std::string>& choice :
+       std::vector<std::vector<std::string>>{{"--box", "none"},
+                                             {"--box", "minmax"},
+                                             {"--box", "rounded"},
+                                             {"--box", "dynamic4", "--anchor", "center"},
+                                             {"--box", "variance-minmax"},
+                                             {"--box", "kdop7"},
+                                             {"--box", "kdop13", "--rule", "project"},
+                                             {"--box", "pca"},
+                                             {"--box", "ellipsoid"},
+                                             {"--box", "hull"},
+                                             {"--box", "hull", "--hull-passes", "1"},
+                                             {"--box", "hull", "--rule", "project"},
+                                             {"--rule", "off", "--clip-discount", "on"},
+                                             {"--space", "log"},
+                                             {"--window", "31", "--moments", "separable"},
+                                             {"--window", "31", "--moments", "gaussian"},
+                                             {"--window", "31", "--moments", "pyramid"}}) {
+    std::vector<std::string> arguments = {"--aov", "clip", "--alpha-rule", "mean"};
+    arguments.insert(arguments.end(), choice.begin(), choice.end());
+    const Outcome outcome = run(arguments);
+    ASSERT_EQ(outcome.code, 0) << choice[1] << ": " << outcome.err;
+    pictures.push_back(bytes_of(output(8)));
+  }
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(pictures[i], pictures[j]) << i << " " << j;
+  expect_refused(run({"--box", "hull", "--rule", "clamp"}), 2, "--rule project");
+  expect_refused(run({"--box", "kdop7", "--anchor", "center"}), 2, "--anchor mean");
+  expect_refused(run({"--box", "rounded", "--window", "5"}), 2, "--window 3");
+  expect_refused(run({"--clip-discount", "on", "--alpha-rule", "fixed"}), 2, "--alpha-rule mean");
+}
+
 TEST_F(Resolve, ProgressStyles) {
   const Outcome json = run({"--progress", "json"});
   EXPECT_EQ(json.code, 0);

@@ -84,6 +84,8 @@ TEST(Usage, OneThingWrong) {
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--alpha=nan"}, "above 0 up to 1"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--gamma", "inf"}, "from 0 to 100"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--window", "4"}, "an odd whole number from 3 to 63"},
+      {{"resolve", "in.####.exr", "-o", "out.####.exr", "--box", "sphere"}, "ellipsoid"},
+      {{"resolve", "in.####.exr", "-o", "out.####.exr", "--hull-passes", "0"}, "from 1 to 64"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--frames="}, "--frames"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--frames", "10-"}, "10-"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--preset", "salvo"}, "salvo"},

@@ -75,23 +75,23 @@ TEST(Hull, ExitLiesBetweenTheExactHullAndTheWidenedOne) {
       const glm::dvec3 g(samples[4]), h = history_of(samples, random, trial);
       Hull hull;
       make_hull(samples, hull);
-      const Hull::Exit exit = hull.exit(g, h, 64);
-      EXPECT_LE(exit.low, exit.high);
-      ASSERT_TRUE(exit.low >= 0 && exit.high <= 1);
+      const Hull::Crossing found = hull.crossing(g, h, 64);
+      EXPECT_LE(found.low, found.high);
+      ASSERT_TRUE(found.low >= 0 && found.high <= 1);
       const double distance = glm::length(h - g);
       if (distance <= hull.floor) {
-        EXPECT_EQ(exit.low, 1);
+        EXPECT_EQ(found.low, 1);
         continue;
       }
       const double scale = std::max(hull.size, hull.floor);
       const double exact = reference::exit_by_faces(points_of(samples), g, h - g, 1e-12 * scale);
       // The widened triangles are turned otherwise than the program's: twice the radius contains them.
       const double wide = reference::exit_by_planes(points_of(samples), g, h - g, 2 * hull.floor);
-      EXPECT_GE(exit.high, std::min(1.0, exact) - 3e-7 * scale / distance);
-      EXPECT_GE(exit.low, std::min(1.0, exact) - 3e-7 * scale / distance);
-      EXPECT_LE(exit.low, std::min(1.0, wide) * (1 + 1e-9) + 1e-12);
-      most = std::max(most, exit.passes);
-      passes += exit.passes, cases += 1;
+      EXPECT_GE(found.high, std::min(1.0, exact) - 3e-7 * scale / distance);
+      EXPECT_GE(found.low, std::min(1.0, exact) - 3e-7 * scale / distance);
+      EXPECT_LE(found.low, std::min(1.0, wide) * (1 + 1e-9) + 1e-12);
+      most = std::max(most, found.passes);
+      passes += found.passes, cases += 1;
     }
   EXPECT_LE(passes / cases, 6);
   RecordProperty("passes_mean_times_100", int(100 * passes / cases));
@@ -107,10 +107,10 @@ TEST(Hull, CappedPassesBracketTheAnswer) {
         const glm::dvec3 g(samples[std::size_t(n / 2)]), h = history_of(samples, random, trial);
         Hull hull;
         make_hull(samples, hull);
-        const double exact = hull.exit(g, h, 64).low;
-        Hull::Exit before{0, 1, 0};
+        const double exact = hull.crossing(g, h, 64).low;
+        Hull::Crossing before{0, 1, 0};
         for (const int cap : {1, 2, 3, 4, 6, 8}) {
-          const Hull::Exit now = hull.exit(g, h, cap);
+          const Hull::Crossing now = hull.crossing(g, h, cap);
           EXPECT_LE(now.passes, cap);
           EXPECT_GE(now.low, before.low);           // each pass only narrows
           EXPECT_LE(now.high, before.high + 1e-6);  // by the floor, where both meet
@@ -177,7 +177,7 @@ TEST(Hull, ShapesContainTheirSamplesAndHoldWhatIsOutside) {
           const glm::dvec3 inside = shape.nearest(glm::dvec3(random.color() - 0.5) * 4.0 * size);
           EXPECT_LE(glm::dot(h - p, inside - p), 1e-9 * size * size);
         }
-        const double t = shape.exit(start, h);
+        const double t = shape.crossing(start, h);
         ASSERT_TRUE(t >= 0 && t <= 1);
         const glm::dvec3 at = start + (h - start) * t, held = shape.nearest(at);
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(held[k], at[k], 1e-9 * size);
@@ -229,16 +229,16 @@ TEST(Hull, TighterShapesAcceptFewerWrongColors) {
     const glm::dvec3 g(samples[4]), half = (glm::dvec3(around.high) - glm::dvec3(around.low)) * 0.5;
     const glm::dvec3 h = around.center() + (random.color() * 2.0 - 1.0) * half * 1.5;
     make_hull(samples, hull);
-    const double exact = hull.exit(g, h, 64).low;
+    const double exact = hull.crossing(g, h, 64).low;
     if (exact >= 1) continue;
     trials += 1;
-    const double t[8] = {around.exit(g, h),
-                         make_k_dop(samples, 7, 0).exit(g, h),
-                         make_k_dop(samples, 13, 0).exit(g, h),
-                         make_pca_box(samples, moments, 0).exit(g, h),
-                         hull.exit(g, h, 2).low,
-                         hull.exit(g, h, 4).low,
-                         hull.exit(g, h, 6).low,
+    const double t[8] = {around.crossing(g, h),
+                         make_k_dop(samples, 7, 0).crossing(g, h),
+                         make_k_dop(samples, 13, 0).crossing(g, h),
+                         make_pca_box(samples, moments, 0).crossing(g, h),
+                         hull.crossing(g, h, 2).low,
+                         hull.crossing(g, h, 4).low,
+                         hull.crossing(g, h, 6).low,
                          exact};
     for (int i = 0; i < 8; ++i) wrong[i] += t[i] >= 1, off[i] += std::abs(t[i] - exact) * glm::length(h - g);
   }
