@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/reject.h"
+#include "plan/preset.h"
 #include "reference/accumulate_reference.h"
 #include "support/scenes.h"
 
@@ -260,6 +261,55 @@ TEST(RectifyShapes, TheKneeFollowsTheLightAndNoFirefly) {
   const Present brighter = noise_present(w, {3, 0.02, 0, 0, false, 8}, workers);
   EXPECT_EQ(box_space_map(BoxSpace::log, brighter, workers).knee, 8 * knee);
   EXPECT_GT(box_space_map(BoxSpace::log, flat_present(w, glm::vec4(0.0f), workers), workers).knee, 0);
+}
+
+TEST(RectifyShapes, EveryNamedChoiceMakesAnotherPicture) {
+  Workers workers(2);
+  const Window w{0, 0, 61, 47};
+  const Present present = noise_present(w, noise_of(11), workers);
+  const History h = next_history(noise_present(w, noise_of(12), workers), {}, {}, {}, workers);
+  std::vector<Plane<glm::vec4>> pictures;
+  for (const char* choice : {"",
+                             "box=none",
+                             "box=minmax",
+                             "box=rounded",
+                             "box=dynamic4",
+                             "box=variance-minmax",
+                             "box=kdop7",
+                             "box=kdop13",
+                             "box=pca",
+                             "box=ellipsoid",
+                             "box=hull",
+                             "box=hull hull-passes=1",
+                             "box=hull rule=project",
+                             "rule=project",
+                             "anchor=mean",
+                             "box=minmax anchor=center",
+                             "space=ycocg",
+                             "space=log",
+                             "clip-discount=on",
+                             "rule=off clip-discount=on",
+                             "window=31",
+                             "window=31 moments=gaussian",
+                             "window=31 moments=pyramid",
+                             "window=33"}) {
+    Parameters p;
+    set_parameters(p, choice);
+    pictures.push_back(accumulate(present, h, p.recursive, p.rectify, {}, 1, {}, workers).history.color);
+    for (std::size_t i = 0; i + 1 < pictures.size(); ++i)
+      EXPECT_FALSE(same_bits(pictures[i], pictures.back())) << choice << " and number " << i;
+  }
+  // And the same box found in two ways is the same picture, to rounding.
+  Parameters direct, separable;
+  set_parameters(direct, "window=31");
+  set_parameters(separable, "window=31 moments=separable");
+  const History a = next_history(present, h, direct.recursive, direct.rectify, workers);
+  const History b = next_history(present, h, direct.recursive, separable.rectify, workers);
+  for (int y = 0; y < w.y1; ++y)
+    for (int x = 0; x < w.x1; ++x)
+      for (int k = 0; k < 4; ++k)
+        EXPECT_NEAR(double(a.color.at(x, y)[k]), double(b.color.at(x, y)[k]),
+                    1e-6 * std::abs(double(a.color.at(x, y)[k])));
 }
 
 TEST(RectifyShapes, WhatDoesNotGoTogetherIsRefusedWithARemedy) {
