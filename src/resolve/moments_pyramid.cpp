@@ -19,26 +19,51 @@ Moments node(const MomentsPyramid::Level& l, int x, int y) {
   return l.nodes[std::size_t(y) * std::size_t(l.width) + std::size_t(x)];
 }
 
-Moments scaled(Moments m, double weight) {
-  m.n *= weight;
-  for (double& value : m.m2) value *= weight;
-  return m;
+/// Merges a node that counts `weight`; nothing of it must be touched when that is 0.
+void add(Moments& sum, const Moments& node, double weight) {
+  const double n = node.n * weight;
+  if (!(n > 0)) return;
+  const double all = sum.n + n, share = n / all, spread = sum.n * share;
+  for (int k = 0; k < 4; ++k) {
+    const double d = node.mean[k] - sum.mean[k];
+    sum.mean[k] += d * share;
+    sum.m2[k] += node.m2[k] * weight + d * d * spread;
+  }
+  sum.n = all;
 }
 
-/// The four nodes around the pixel's centre, weighed so that each pixel below counts `share` of 1 in all.
-void add_level(const MomentsPyramid& p, const AccumulateView& v, int level, double share, int x, int y, Moments& sum) {
+/// Place of a pixel's centre among the squares of a level: the one before it, and the fraction towards the next.
+struct Place {
+  int base;
+  double fraction;
+};
+Place place_of(int pixel, int level) {
+  const double at = (pixel + 0.5) / double(1 << level) - 0.5;
+  const int base = int(at + 1) - 1;  // floor: at is above -1
+  return {base, at - base};
+}
+
+/// Row y of a level such that each pixel below counts `share` of 1 in all.
+void mix_level(const MomentsPyramid& p, const AccumulateView& v, int level, double share, int y,
+               std::vector<Moments>& out) {
+  out.clear();
   if (share <= 0) return;
-  const double size = std::ldexp(1.0, level);
-  const double px = (x + 0.5) / size - 0.5, py = (y + 0.5) / size - 0.5;
-  const int bx = int(std::floor(px)), by = int(std::floor(py));
-  const double fx = px - bx, fy = py - by;
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i) {
-      const double weight = (i ? fx : 1 - fx) * (j ? fy : 1 - fy) * share / (size * size);
-      if (weight <= 0) continue;
-      const Moments m = level == 0 ? leaf(v, bx + i, by + j) : node(p.levels[std::size_t(level - 1)], bx + i, by + j);
-      sum = merge(sum, scaled(m, weight));
-    }
+  const Place at = place_of(y, level);
+  const double weight = share / std::ldexp(1.0, 2 * level);
+  const auto value = [&](int x, int j) {
+    return level == 0 ? leaf(v, x, j) : node(p.levels[std::size_t(level - 1)], x, j);
+  };
+  out.resize(std::size_t(level == 0 ? v.width : p.levels[std::size_t(level - 1)].width));
+  for (int x = 0; x < int(out.size()); ++x) {
+    add(out[std::size_t(x)], value(x, at.base), (1 - at.fraction) * weight);
+    add(out[std::size_t(x)], value(x, at.base + 1), at.fraction * weight);
+  }
+}
+
+void add_level(const std::vector<Moments>& row, int level, int x, Moments& sum) {
+  const Place at = place_of(x, level);
+  if (at.base >= 0 && at.base < int(row.size())) add(sum, row[std::size_t(at.base)], 1 - at.fraction);
+  if (at.base + 1 < int(row.size())) add(sum, row[std::size_t(at.base + 1)], at.fraction);
 }
 
 }  // namespace
@@ -71,10 +96,15 @@ MomentsPyramid make_pyramid(const AccumulateView& view, int window, Workers& wor
   return p;
 }
 
-Moments sample_pyramid(const MomentsPyramid& pyramid, const AccumulateView& view, int x, int y) {
+void mix_pyramid_row(const MomentsPyramid& pyramid, const AccumulateView& view, int y, PyramidRow& row) {
+  mix_level(pyramid, view, pyramid.lower, 1 - pyramid.upper_share, y, row.lower);
+  mix_level(pyramid, view, pyramid.lower + 1, pyramid.upper_share, y, row.upper);
+}
+
+Moments sample_pyramid(const MomentsPyramid& pyramid, const PyramidRow& row, int x) {
   Moments sum;
-  add_level(pyramid, view, pyramid.lower, 1 - pyramid.upper_share, x, y, sum);
-  add_level(pyramid, view, pyramid.lower + 1, pyramid.upper_share, x, y, sum);
+  add_level(row.lower, pyramid.lower, x, sum);
+  add_level(row.upper, pyramid.lower + 1, x, sum);
   return sum;
 }
 

@@ -23,9 +23,15 @@ struct MomentsPyramid {
 /// For a blur of the variance of a box `window` pixels wide. About 24 bytes a pixel.
 MomentsPyramid make_pyramid(const AccumulateView& view, int window, Workers& workers);
 
-/// Around a pixel: bilinear in two levels, linear between them. Distributions are mixed, not their moments, so the
-/// variance between the squares counts too. The blur is wide and soft, and varies a little with the pixel's place in
-/// its square: cheaper memory than exact windows, less exact.
-Moments sample_pyramid(const MomentsPyramid& pyramid, const AccumulateView& view, int x, int y);
+/// The two levels, mixed along y for one row of pixels; empty where a level has no share.
+struct PyramidRow {
+  std::vector<Moments> lower, upper;
+};
+void mix_pyramid_row(const MomentsPyramid& pyramid, const AccumulateView& view, int y, PyramidRow& row);
+
+/// Around a pixel of that row: bilinear in two levels, linear between them. Distributions are mixed, not their moments,
+/// so the variance between the squares counts too. The blur is wide and soft, and varies a little with the pixel's
+/// place in its square: less exact than sliding windows.
+Moments sample_pyramid(const MomentsPyramid& pyramid, const PyramidRow& row, int x);
 
 }  // namespace varve

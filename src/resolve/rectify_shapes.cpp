@@ -133,8 +133,8 @@ class PixelRectifier {
     if (!needs_moments(r_))
       here_.moments.n = here_.extremes.low[0] <= here_.extremes.high[0] ? 1 : 0;
     else
-      here_.moments =
-          contents_.pyramid.levels.empty() ? contents_.moments.at(x, y) : sample_pyramid(contents_.pyramid, v_, x, y);
+      here_.moments = contents_.pyramid.levels.empty() ? contents_.moments.at(x, y)
+                                                       : sample_pyramid(contents_.pyramid, s_.pyramid, x);
     if (!(here_.moments.n > 0)) return false;
     if (!v_.leave_present_out || !(v_.weight.origin[y * v_.weight.stride + x] > 0)) return true;
     const glm::dvec4 own = color_at(v_.neighbors, x, y);
@@ -239,6 +239,7 @@ void prepare_band(const AccumulateView& view, const ShapeRules& rules, int begin
 void rectify_shapes(const AccumulateView& v, const ShapeRules& rules, const WindowContents& contents, int y,
                     const RowScratch& row, ShapeScratch& scratch, RowCounts& counts) {
   constexpr double kLimit = std::numeric_limits<float>::max();
+  if (!contents.pyramid.levels.empty()) mix_pyramid_row(contents.pyramid, v, y, scratch.pyramid);
   PixelRectifier rectify(v, rules, contents, scratch);
   float* distances = v.out_clip.origin ? v.out_clip.origin + y * v.out_clip.stride : nullptr;
   const double most = (1 - rules.alpha) / rules.alpha;

@@ -32,6 +32,7 @@ struct ShapeRules {
 struct ShapeScratch {
   Samples samples;
   Hull hull;
+  PyramidRow pyramid;
 };
 
 /// Rows of a band: what two bands both need is window - 1 rows, so a band must be large against that, and small enough
