@@ -8,8 +8,8 @@ constexpr Aov kAovs[] = {
      "Effective sample count: one over the sum of squared weights of all samples in the pixel. 0 where nothing valid "
      "was seen."},
     {"clip", "", PixelType::float32, "relative", "0 to 2", "inferno", 0, 1,
-     "Clip distance: how far rectification moved the history, in RGB, over the longer of what it was and what it "
-     "became."},
+     "Clip distance: how far rectification moved the history (under --rule off: would have moved it), in RGB, over the "
+     "longer of what it was and what it became."},
     {"reject", "", PixelType::uint32, "bits", "0 to 127", "turbo", 0, 127,
      "Why history was not used: a sum of the bits listed under REJECTION BITS. 0 where history was used."},
     {"motion", "xy", PixelType::float32, "pixels, y down", "any", "blue-red", -16, 16,

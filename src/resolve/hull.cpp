@@ -65,6 +65,60 @@ void make_hull(const Samples& samples, Hull& hull) {
   hull.floor = std::max({1e-6 * hull.size, 4 * kFloatRounding * largest, 2 * kFloatQuantum});
 }
 
+namespace {
+
+/// The segment's view of the samples, lengths in units of `scale`: p along it, q and r across.
+struct Across {
+  const double *p, *q, *r;
+  std::size_t count;
+  double top;  // largest p, at least 0
+};
+
+Across look_along(const Hull& hull, const glm::dvec3& at, const glm::dvec3& d, double scale) {
+  glm::dvec3 a, b;
+  frame_of(d, a, b);
+  const std::size_t n = hull.x.size();
+  double *p = hull.work.data(), *q = p + n, *r = q + n, top = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = (hull.x[i] - at.x) / scale, y = (hull.y[i] - at.y) / scale, z = (hull.z[i] - at.z) / scale;
+    p[i] = d.x * x + d.y * y + d.z * z;
+    q[i] = a.x * x + a.y * y + a.z * z;
+    r[i] = b.x * x + b.y * y + b.z * z;
+    top = std::max(top, p[i]);
+  }
+  return {p, q, r, n, top};
+}
+
+/// The widened sample farthest above a plane, and the height over the origin of the parallel plane through it.
+Corner farthest_above(const Plane3& plane, const Across& samples, const std::array<Corner, 3>& small, double& height) {
+  std::size_t best = 0, corner = 0;
+  double support = -1e300, lift = -1e300;
+  for (std::size_t i = 0; i < samples.count; ++i) {
+    const double above = samples.p[i] - plane.slope_q * samples.q[i] - plane.slope_r * samples.r[i];
+    if (above > support) support = above, best = i;
+  }
+  for (std::size_t j = 0; j < 3; ++j) {
+    const double l = -plane.slope_q * small[j].q - plane.slope_r * small[j].r;
+    if (l > lift) lift = l, corner = j;
+  }
+  height = support + lift;
+  return {samples.q[best] + small[corner].q, samples.r[best] + small[corner].r, samples.p[best]};
+}
+
+/// Puts the new corner in place of the one that leaves the origin between the other two and it.
+void refine(std::array<Corner, 3>& portal, const Corner& next) {
+  const double s[3] = {cross(next, portal[0]), cross(next, portal[1]), cross(next, portal[2])};
+  std::size_t keep = 0;
+  double fit = -1e300;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const double inside = std::min(s[j], -s[(j + 1) % 3]);
+    if (inside > fit) fit = inside, keep = j;
+  }
+  portal[(keep + 2) % 3] = next;
+}
+
+}  // namespace
+
 // The height of the hull's upper side over the origin of the (q, r) plane: a linear program in three variables, solved
 // by refining a triangle ("portal") around that origin with the sample farthest above it. (Simplex with the steepest
 // support; Snethen's portal refinement, XenoCollide 2008, is its kin.) The triangle of the first pass stands for a
@@ -73,59 +127,25 @@ Hull::Crossing Hull::crossing(const glm::dvec3& g, const glm::dvec3& h, int most
   const glm::dvec3 way = h - g, at = g - origin;
   const double distance = glm::length(way);
   if (!(distance > floor)) return {1, 1, 0};
-  const std::size_t n = x.size();
-  const glm::dvec3 d = way / distance;
-  glm::dvec3 a, b;
-  frame_of(d, a, b);
-  const double scale = std::max({size, glm::length(at), floor}), goal = distance / scale;
-  double *p = work.data(), *q = p + n, *r = q + n;
-  double top = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double ex = (x[i] - at.x) / scale, ey = (y[i] - at.y) / scale, ez = (z[i] - at.z) / scale;
-    p[i] = d.x * ex + d.y * ey + d.z * ez;
-    q[i] = a.x * ex + a.y * ey + a.z * ez;
-    r[i] = b.x * ex + b.y * ey + b.z * ez;
-    top = std::max(top, p[i]);
-  }
-  const double eta = floor / scale;
+  const double scale = std::max({size, glm::length(at), floor}), goal = distance / scale, eta = floor / scale;
+  const Across samples = look_along(*this, at, way / distance, scale);
   // An equilateral triangle, turned a little so that its sides lie along no lattice.
   const std::array<Corner, 3> small = {Corner{0.98768834 * eta, 0.15643447 * eta, 0},
                                        Corner{-0.62932039 * eta, 0.77714596 * eta, 0},
                                        Corner{-0.35836795 * eta, -0.93358043 * eta, 0}};
   std::array<Corner, 3> portal = small;
-  double low = 0, high = top;
+  double low = 0, high = samples.top;
   int pass = 0;
   while (pass < most_passes) {
     ++pass;
     const Plane3 plane = plane_through(portal);
     low = std::max(low, plane.height);
     if (low >= goal) return {1, 1, pass};
-    std::size_t best = 0;
-    double support = -1e300;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double above = p[i] - plane.slope_q * q[i] - plane.slope_r * r[i];
-      if (above > support) support = above, best = i;
-    }
-    Corner next{q[best], r[best], p[best]};
-    std::size_t corner = 0;
-    double lift = -1e300;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const double l = -plane.slope_q * small[j].q - plane.slope_r * small[j].r;
-      if (l > lift) lift = l, corner = j;
-    }
-    next.q += small[corner].q;
-    next.r += small[corner].r;
-    high = std::min(high, support + lift);
+    double height;
+    const Corner next = farthest_above(plane, samples, small, height);
+    high = std::min(high, height);
     if (!(high - low > kTolerance * std::min(1.0, goal))) break;
-    // The new corner and the two between which the origin lies.
-    const double s[3] = {cross(next, portal[0]), cross(next, portal[1]), cross(next, portal[2])};
-    std::size_t keep = 0;
-    double fit = -1e300;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const double inside = std::min(s[j], -s[(j + 1) % 3]);
-      if (inside > fit) fit = inside, keep = j;
-    }
-    portal[(keep + 2) % 3] = next;
+    refine(portal, next);
   }
   high = std::max(low, high);
   return {std::min(1.0, low / goal), std::min(1.0, high / goal), pass};

@@ -1,21 +1,14 @@
 // The slow twin of the rectification: every shape as a question "is this color inside", every clip by bisection.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
 
+#include "reference/shape_reference.h"
 #include "resolve/accumulate.h"
 
 namespace varve::reference {
-
-using Color = std::array<double, 4>;
-
-struct Sample {
-  Color color{};
-  double weight = 1;
-};
 
 struct Rectified {
   Color color{};        ///< RGBA
@@ -31,12 +24,5 @@ std::optional<Rectified> rectify(const Present& present, const RectifyParameters
 /// Weights that the moments of a pixel give to the pixels around, by the definition of each kind.
 std::vector<Sample> weighed_samples(const Present& present, const RectifyParameters& p,
                                     const std::function<Color(const glm::vec4&)>& map, int x, int y, bool with_centre);
-
-/// Eigenvectors of the covariance, row by row, in long double by always turning the largest element away.
-struct Axes {
-  std::array<std::array<double, 3>, 3> direction{};
-  std::array<double, 3> variance{};
-};
-Axes principal_axes(const std::vector<Sample>& samples);
 
 }  // namespace varve::reference

@@ -240,6 +240,52 @@ TEST(RectifyShapes, HistoryOfAnotherColorBecomesThePresentWhereThatIsFlat) {
   }
 }
 
+/// Mean squared error of the blend of a noisy present (variance 1) with a history of weight 9 that is off by `bias`.
+double error_with_history(double bias, bool discount, Workers& workers) {
+  const Window w{0, 0, 120, 90};
+  std::mt19937 random(7);
+  std::normal_distribution<float> normal;
+  Present present = flat_present(w, glm::vec4(100, 100, 100, 1), workers);
+  for (int y = 0; y < w.y1; ++y)
+    for (int x = 0; x < w.x1; ++x)
+      present.color.at(x, y) += glm::vec4(normal(random), normal(random), normal(random), 0);
+  History h = next_history(flat_present(w, glm::vec4(100, 100, 100, 1), workers), {}, {}, {}, workers);
+  for (int y = 0; y < w.y1; ++y)
+    for (int x = 0; x < w.x1; ++x) {
+      // Off by the bias, and by the noise that nine samples leave.
+      h.color.at(x, y) += glm::vec4(normal(random), normal(random), normal(random), 0) / 3.0f + float(bias);
+      h.total.at(x, y) = 9;
+    }
+  RectifyParameters r;
+  r.rule = BoxRule::off;
+  r.gamma = 0;  // the mean of the neighbors: the distance is the whole bias
+  r.window = 7;
+  r.clip_discount = discount;
+  const History out = next_history(present, h, {}, r, workers);
+  double sum = 0;
+  for (int y = 0; y < w.y1; ++y)
+    for (int x = 0; x < w.x1; ++x)
+      for (int k = 0; k < 3; ++k) sum += std::pow(double(out.color.at(x, y)[k]) - 100, 2) / 3 / double(w.pixels());
+  return sum;
+}
+
+TEST(RectifyShapes, DiscountedHistoryIsNeverMuchWorseThanNoneAndHelpsWhereItIsRight) {
+  Workers workers(2);
+  const double alone = 1;  // the present's own variance
+  for (const double bias : {0.0, 0.5, 1.0, 2.0, 4.0}) {
+    const double plain = error_with_history(bias, false, workers), with = error_with_history(bias, true, workers);
+    RecordProperty("bias_" + std::to_string(int(10 * bias)), std::to_string(plain) + " " + std::to_string(with));
+    EXPECT_LT(with, 1.1 * alone) << bias;
+    if (bias == 0) {
+      EXPECT_LT(with, 0.3 * alone);
+    }
+    if (bias >= 1) {
+      EXPECT_LT(with, plain) << bias;
+    }
+  }
+  EXPECT_GT(error_with_history(4, false, workers), 10 * alone);
+}
+
 TEST(RectifyShapes, LogIsOddExactAtZeroAndBack) {
   const BoxSpaceMap map{BoxSpace::log, 1.0 / 64};
   for (const double v : {0.0, 1e-30, 0.001, 1.0, 65504.0, 1e30, 3e38}) {
