@@ -169,8 +169,9 @@ std::vector<Knob> knobs() {
        word(
            [](auto& p) -> auto& { return p.rectify.space; }, kBoxSpaces)},
       {"hull-passes", "NUMBER", rectify, expert,
-       "Refinements that --box hull may take. The exact answer needs 4 on average; with fewer, history is clipped more "
-       "than it had to be, and never ends outside the hull.",
+       "Refinements that --box hull may take under --rule clip, for speed. The exact answer needs 4 on average, 6 "
+       "nearly "
+       "always; with fewer more colors pass, down to 1, which is little more than the minmax box.",
        number([](auto& p) -> auto& { return p.rectify.hull_passes; }, {1, 64})},
       {"clip-discount", "WORD", rectify, advanced, "Whether a clipped history loses weight to the present.",
        word(

@@ -17,8 +17,9 @@ struct BoxSpaceMap {
   double knee = 1;
 };
 
-/// The log's knee lies six stops below the median of what is not black, a power of two: it scales with the light (to
-/// rounding: a logarithm is not exact) and fireflies do not move it. It is the one number here that far pixels share.
+/// The log's knee lies six stops below the median of what is not black, a power of two: light that is a power of two
+/// brighter gives the same logarithms, and fireflies do not move it. It is the one number here that far pixels share.
+/// The logarithm is the C library's: its last bit may differ between systems.
 BoxSpaceMap box_space_map(BoxSpace space, const Present& present, Workers& workers);
 
 /// RGBA to the space and back; alpha stays as it is.

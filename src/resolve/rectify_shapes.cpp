@@ -100,8 +100,8 @@ class PixelRectifier {
       case Box::hull: {
         make_hull(s_.samples, s_.hull);
         const bool held = r_.anchor == BoxAnchor::mean || (rules_.present_is_sample && counts_itself(v_, x, y));
-        h = bring_onto(CappedHull{s_.hull, r_.hull_passes}, alpha, r_.rule, h, target(x, y, whole_mean, whole_mean),
-                       held);
+        h = bring_onto(CappedHull{s_.hull, r_.hull_passes, here_.extremes}, alpha, r_.rule, h,
+                       target(x, y, whole_mean, whole_mean), held);
         return true;
       }
     }
@@ -118,11 +118,17 @@ class PixelRectifier {
   }
 
  private:
-  /// When passes run out the lower bound counts: what is let through is inside for certain.
+  /// When passes run out the upper bound counts, and the minmax box where that is tighter: the fewer the passes, the
+  /// more the hull is like a box. (The lower bound would drop good history: on a pan one pass of it cost 4 dB.)
   struct CappedHull {
     const Hull& hull;
     int passes;
-    double crossing(const glm::dvec3& g, const glm::dvec3& h) const { return hull.crossing(g, h, passes).low; }
+    const Extremes& extremes;
+    double crossing(const glm::dvec3& g, const glm::dvec3& h) const {
+      const Hull::Crossing found = hull.crossing(g, h, passes);
+      if (found.high - found.low <= 1e-6) return found.low;
+      return std::min(found.high, minmax_box(extremes).crossing(g, h));
+    }
     glm::dvec3 nearest(const glm::dvec3& h) const { return hull.nearest(h); }
   };
 

@@ -113,4 +113,32 @@ double exit_by_planes(const std::vector<glm::dvec3>& points, const glm::dvec3& g
   return double(best / length);
 }
 
+glm::dvec3 nearest_by_faces(const std::vector<glm::dvec3>& points, const glm::dvec3& h) {
+  glm::dvec3 mean(0);
+  for (const glm::dvec3& p : points) mean += p / double(points.size());
+  const double away = glm::length(h - mean);
+  if (away <= 1e-12 * glm::length(mean)) return h;
+  if (exit_by_faces(points, mean, h - mean, 1e-12 * away) >= 1) return h;
+  glm::dvec3 best = points.front();
+  const auto consider = [&](const glm::dvec3& p) {
+    if (glm::length(p - h) < glm::length(best - h)) best = p;
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    consider(points[i]);
+    for (std::size_t j = i + 1; j < points.size(); ++j) {
+      const glm::dvec3 u = points[j] - points[i], d = h - points[i];
+      const double uu = glm::dot(u, u), ud = glm::dot(u, d);
+      if (uu > 0) consider(points[i] + u * std::clamp(ud / uu, 0.0, 1.0));
+      for (std::size_t k = j + 1; k < points.size(); ++k) {
+        const glm::dvec3 v = points[k] - points[i];
+        const double vv = glm::dot(v, v), uv = glm::dot(u, v), vd = glm::dot(v, d), area = uu * vv - uv * uv;
+        if (!(area > 1e-12 * uu * vv)) continue;  // a line: its ends have been looked at
+        const double a = (ud * vv - vd * uv) / area, b = (vd * uu - ud * uv) / area;
+        if (a >= 0 && b >= 0 && a + b <= 1) consider(points[i] + u * a + v * b);
+      }
+    }
+  }
+  return best;
+}
+
 }  // namespace varve::reference

@@ -15,4 +15,7 @@ double exit_by_faces(const std::vector<glm::dvec3>& points, const glm::dvec3& g,
 /// planes through three corners that lie above all others. Has an answer whatever the points.
 double exit_by_planes(const std::vector<glm::dvec3>& points, const glm::dvec3& g, const glm::dvec3& d, double eta);
 
+/// The point of the hull nearest to h, by looking at every one, two and three of the points; h itself when inside.
+glm::dvec3 nearest_by_faces(const std::vector<glm::dvec3>& points, const glm::dvec3& h);
+
 }  // namespace varve::reference

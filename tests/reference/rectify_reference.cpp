@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/geometric.hpp>
+
+#include "reference/hull_reference.h"
 #include "reference/shape_reference.h"
 
 namespace varve::reference {
@@ -92,6 +95,43 @@ std::vector<Sample> dynamic_taps(const Present& present, const Space& space, int
   return taps;
 }
 
+glm::dvec3 color3(const Color& c) { return {c[0], c[1], c[2]}; }
+
+std::vector<glm::dvec3> points_of(const std::vector<Sample>& samples) {
+  std::vector<glm::dvec3> points;
+  for (const Sample& c : samples) points.push_back(color3(c.color));
+  return points;
+}
+
+Color nearest_in_hull(const std::vector<Sample>& samples, const Statistics& s, const Color& h) {
+  const double floor = 1e-6 * std::abs(s.mean[3]);
+  const glm::dvec3 p = nearest_by_faces(points_of(samples), color3(h));
+  return {p.x, p.y, p.z, std::clamp(h[3], s.low[3] - floor, s.high[3] + floor)};
+}
+
+Shape hull_shape(const std::vector<Sample>& samples, const Statistics& s) {
+  Shape shape;
+  shape.mean = shape.center = s.mean;
+  shape.nearest = [=](const Color& h) { return nearest_in_hull(samples, s, h); };
+  shape.inside = [=](const Color& h) { return nearest_in_hull(samples, s, h) == h; };
+  return shape;
+}
+
+/// By the faces, since "inside" is no question to be asked of a flat hull two hundred times.
+Color clip_to_hull(const std::vector<Sample>& samples, const Statistics& s, const Color& h, const Color& target) {
+  const Color g = nearest_in_hull(samples, s, target);
+  const glm::dvec3 way = color3(h) - color3(g);
+  const double floor = 1e-6 * std::abs(s.mean[3]);
+  double t = 1;
+  if (glm::length(way) > 0)
+    t = std::min(t, exit_by_faces(points_of(samples), color3(g), way, 1e-9 * (size_of(h) + size_of(g))));
+  if (h[3] > s.high[3] + floor) t = std::min(t, (s.high[3] + floor - g[3]) / (h[3] - g[3]));
+  if (h[3] < s.low[3] - floor) t = std::min(t, (g[3] - s.low[3] + floor) / (g[3] - h[3]));
+  Color moved;
+  for (std::size_t k = 0; k < 4; ++k) moved[k] = g[k] + t * (h[k] - g[k]);
+  return moved;
+}
+
 std::optional<Shape> shape_of(const Present& present, const RectifyParameters& p, const Space& space,
                               const std::vector<Sample>& samples, const Statistics& s, int x, int y, bool with_centre) {
   const auto map = [&](const glm::vec4& c) { return space.to(color_of(c)); };
@@ -100,8 +140,9 @@ std::optional<Shape> shape_of(const Present& present, const RectifyParameters& p
   plain.moments = WindowMoments::direct;
   switch (p.box) {
     case Box::none:
-    case Box::hull:  // see hull_reference
       return {};
+    case Box::hull:
+      return hull_shape(samples, s);
     case Box::kdop7:
     case Box::kdop13:
     case Box::pca:
@@ -192,7 +233,9 @@ std::optional<Rectified> rectify(const Present& present, const RectifyParameters
   const Color there = space.to(h);
   if (shape->inside(there)) return out;
   Color moved;
-  if (p.rule == BoxRule::clip) {
+  if (p.rule == BoxRule::clip && p.box == Box::hull) {
+    moved = clip_to_hull(samples, s, there, p.anchor == BoxAnchor::present ? space.to(now) : s.mean);
+  } else if (p.rule == BoxRule::clip) {
     Color g = p.anchor == BoxAnchor::present ? space.to(now)
               : p.anchor == BoxAnchor::mean  ? shape->mean
                                              : shape->center;

@@ -75,7 +75,7 @@ TEST(RectifyShapes, AgreeWithTheirSlowTwin) {
   Workers workers(2);
   unsigned seed = 100;
   for (const RectifyParameters& r : all_cases()) {
-    if (r.box == Box::hull) continue;  // see hull_test
+    if (r.box == Box::hull && r.window > 3) continue;  // the twin looks at every three of them
     SCOPED_TRACE(name_of(r));
     const Window first{-3, 5, 24, 22}, second{-1, 3, 26, 20};  // odd sizes; the window moves
     RecursiveParameters recursive;
@@ -83,18 +83,25 @@ TEST(RectifyShapes, AgreeWithTheirSlowTwin) {
     const History h = next_history(noise_present(first, noise_of(++seed), workers), {}, recursive, {}, workers);
     const Present present = noise_present(second, noise_of(++seed), workers);
     const Accumulated fast = accumulate(present, h, recursive, r, {}, kRejectCut, kAll, workers);
-    const double rounding = r.space == BoxSpace::log ? 2e-5 : 4e-6;
+    // The hull is widened by a millionth of its size: a segment that just misses a long thin one from its tip leaves it
+    // later than the exact one does (hull_test has the bounds). Fewer than one pixel in ten does, beside highlights.
+    std::size_t allowed = r.box == Box::hull && r.rule == BoxRule::clip ? second.pixels() / 10 : 0;
+    const double rounding = r.box == Box::hull ? 1e-4 : r.space == BoxSpace::log ? 2e-5 : 4e-6;
     for (int y = second.y0; y < second.y1; ++y)
       for (int x = second.x0; x < second.x1; ++x) {
         const reference::Pixel slow = reference::accumulate_pixel(present, h, recursive, r, {}, kRejectCut, x, y);
         const double size = std::max(size_around(present, x, y, r.window),
                                      double(glm::length(h.color.at(std::clamp(x, first.x0, first.x1 - 1),
                                                                    std::clamp(y, first.y0, first.y1 - 1)))));
+        bool same = true;
         for (std::size_t k = 0; k < 4; ++k)
-          ASSERT_NEAR(double(fast.history.color.at(x, y)[int(k)]), slow.color[k], rounding * size)
-              << x << "," << y << " channel " << k;
-        ASSERT_NEAR(double(fast.diagnostics.clip.at(x, y)), slow.clip, 2e-4) << x << "," << y;
-        ASSERT_NEAR(double(fast.history.total.at(x, y)), slow.total, 2e-3) << x << "," << y;
+          same = same && std::abs(double(fast.history.color.at(x, y)[int(k)]) - slow.color[k]) <= rounding * size;
+        same = same && std::abs(double(fast.diagnostics.clip.at(x, y)) - slow.clip) <= 2e-4;
+        same = same && std::abs(double(fast.history.total.at(x, y)) - slow.total) <= 2e-3;
+        if (!same && allowed > 0) --allowed, same = true;
+        ASSERT_TRUE(same) << x << "," << y << ": " << fast.history.color.at(x, y).g << " not " << slow.color[1]
+                          << ", clip " << fast.diagnostics.clip.at(x, y) << " not " << slow.clip << ", total "
+                          << fast.history.total.at(x, y) << " not " << slow.total;
       }
   }
 }
