@@ -225,7 +225,9 @@ bool needs_shapes(const RectifyParameters& r) {
 int band_rows(const ShapeRules& rules, int height) {
   const bool slides = rules.rectify.moments == WindowMoments::separable ||
                       rules.rectify.moments == WindowMoments::gaussian || by_extremes(rules.rectify.box);
-  return rules.rectify.moments != WindowMoments::direct && slides ? kWindowBandRows : height;
+  if (rules.rectify.moments == WindowMoments::direct || !slides) return height;
+  const int bands = (height + kWindowBandRows - 1) / kWindowBandRows;
+  return (height + bands - 1) / bands;  // of equal size
 }
 
 void prepare_frame(const AccumulateView& view, const ShapeRules& rules, WindowContents& contents, Workers& workers) {

@@ -35,9 +35,9 @@ struct ShapeScratch {
   PyramidRow pyramid;
 };
 
-/// Rows of a band: what two bands both need is window - 1 rows, so a band must be large against that, and small enough
-/// that 96 bytes a pixel of it are no burden (at most 57 MB for 1920 pixels across).
-inline constexpr int kWindowBandRows = 256;
+/// Most rows of a band: the window - 1 rows that two bands both need must be few against that, and 104 bytes a pixel of
+/// it no burden (at most 90 MB for 1920 pixels across, with moments and extremes).
+inline constexpr int kWindowBandRows = 384;
 
 /// How many rows go together; what is needed once a frame, and once a band.
 int band_rows(const ShapeRules& rules, int height);

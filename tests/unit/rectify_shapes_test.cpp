@@ -169,7 +169,7 @@ TEST(RectifyShapes, ScalingTheLightByAPowerOfTwoScalesTheResultBitForBit) {
 
 TEST(RectifyShapes, ThreadsDoNotChangeAByte) {
   Workers one(1), many(5);
-  const Window w{0, 0, 61, 300};  // more than one band
+  const Window w{0, 0, 61, 400};  // more than one band
   const Present present = noise_present(w, noise_of(4), one);
   const History h = next_history(present, {}, {}, {}, one);
   for (const RectifyParameters& r : all_cases()) {
