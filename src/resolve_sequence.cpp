@@ -209,8 +209,8 @@ FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& worker
 /// One subject: the present meets the history.
 struct Resolved {
   Accumulated accumulated;
-  History prediction;         ///< only where the diagnostic plane of that name is asked for
-  Plane<glm::vec4> finished;  ///< what is written, where that is not what the history keeps
+  History prediction = {};         ///< only where the diagnostic plane of that name is asked for
+  Plane<glm::vec4> finished = {};  ///< what is written, where that is not what the history keeps
 };
 
 /// Decides whether a frame begins a new shot, before it meets its history: marks it in the schedule if so, and says

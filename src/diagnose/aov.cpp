@@ -8,8 +8,8 @@ constexpr Aov kAovs[] = {
      "Effective sample count: one over the sum of squared weights of all samples in the pixel. 0 where nothing valid "
      "was seen."},
     {"clip", "", PixelType::float32, "relative", "0 to 2", "inferno", 0, 1,
-     "Clip distance: how far rectification moved the history, in RGB, over the longer of what it was and what it "
-     "became.",
+     "Clip distance: how far rectification moved the history (under --rule off: would have moved it), in RGB, over the "
+     "longer of what it was and what it became.",
      kByRecursive | kByTwoSided},
     {"reject", "", PixelType::uint32, "bits", "0 to 8191", "turbo", 0, 8191,
      "Why history was not used, or counts half or less of what it would: a sum of the bits listed under REJECTION "

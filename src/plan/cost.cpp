@@ -6,6 +6,7 @@
 #include "diagnose/aov.h"
 #include "plan/gather_plan.h"
 #include "plan/two_sided_plan.h"
+#include "resolve/rectify_shapes.h"
 
 namespace varve {
 namespace {
@@ -29,6 +30,42 @@ constexpr double kConvert = 1.5, kSanitize = 1.6, kMotion = 1.1, kInvert = 12, k
 
 // Two-sided passes each frame twice in each direction.
 constexpr double kTwoSidedPasses = 4;
+
+/// Nanoseconds per pixel to hold history to its neighborhood.
+double box_cost(const RectifyParameters& r) {
+  if (r.box == Box::none) return 0;
+  if (!needs_shapes(r)) return kBox * std::max(1, r.window) / 3;
+  const double log = r.space == BoxSpace::log ? 120 : 0;
+  if (r.moments == WindowMoments::separable) return log + 90;
+  if (r.moments == WindowMoments::gaussian) return log + 140;
+  if (r.moments == WindowMoments::pyramid) return log + 130;
+  const double neighbors = double(r.window) * r.window / 9;  // of 3x3
+  switch (r.box) {
+    case Box::kdop7:
+    case Box::kdop13:
+    case Box::rounded:
+    case Box::dynamic4:
+      return log + 200 * neighbors;
+    case Box::pca:
+    case Box::ellipsoid:
+      return log + 350 + 100 * neighbors;
+    case Box::hull:
+      return log + 200 + 150 * neighbors;
+    default:
+      return log + 100 * neighbors;
+  }
+}
+
+/// Bytes that window moments need while a frame is at work.
+std::size_t window_bytes(const RectifyParameters& r, const Window& window) {
+  if (r.box == Box::none || r.moments == WindowMoments::direct) return 0;
+  const bool cut = r.box != Box::variance;
+  const std::size_t width = std::size_t(window.width());
+  const std::size_t rows = std::size_t(std::min(window.height(), kWindowBandRows) + r.window - 1);
+  if (r.moments == WindowMoments::pyramid) return window.pixels() * 24 + (cut ? rows * width * sizeof(Extremes) : 0);
+  return rows * width * (r.box == Box::minmax && !r.clip_discount ? 0 : sizeof(Moments)) +
+         (cut ? rows * width * sizeof(Extremes) : 0);
+}
 
 CodecCost cost_of(Compression compression) {
   switch (compression) {
@@ -67,11 +104,13 @@ std::size_t bytes_of(const Part& part) {
   return bytes;
 }
 
-std::size_t pixels_of(const SequenceInfo& info, const Subject& subject) {
+Window window_of(const SequenceInfo& info, const Subject& subject) {
   for (const std::optional<ChannelRef>& channel : subject.color)
-    if (channel) return part_of(info, *channel).data_window.pixels();
-  return 0;
+    if (channel) return part_of(info, *channel).data_window;
+  return {};
 }
+
+std::size_t pixels_of(const SequenceInfo& info, const Subject& subject) { return window_of(info, subject).pixels(); }
 
 using PartKey = std::pair<int, int>;
 
@@ -136,8 +175,11 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
     if (gathers) histories += pixels * gather_bytes_per_pixel(parameters);
     if (two_sided)  // the past of the next block too, three frames' vectors
       histories += pixels * (24 + 3 * 20 + waiting_bytes_per_pixel(parameters, output));
-    at_work = std::max(at_work, pixels * (16 + 16 * companions + (plan.use_motion ? 8 : 0) + (plan.use_depth ? 4 : 0) +
-                                          diagnostic_bytes_per_pixel(output, parameters.accumulator)));
+    const bool in_space = parameters.rectify.box != Box::none && parameters.rectify.space != BoxSpace::rgb;
+    at_work =
+        std::max(at_work, pixels * (16 + 16 * companions + (plan.use_motion ? 8 : 0) + (plan.use_depth ? 4 : 0) +
+                                    (in_space ? 16 : 0) + diagnostic_bytes_per_pixel(output, parameters.accumulator)) +
+                              window_bytes(parameters.rectify, window_of(info, subject)));
   }
   return kBaseBytes + raw + histories + at_work;
 }
@@ -174,7 +216,7 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
   if (plan.use_motion && parameters.motion.dilation != Dilation::none) per_pixel += kDilate;
   if (recursive.disocclusion == Disocclusion::depth) per_pixel += kDepthTest;
   if (recursive.sample_filter != SampleFilter::none) per_pixel += kSampleWeights;
-  if (parameters.rectify.box != Box::none) per_pixel += kBox * std::max(1, parameters.rectify.window) / 3;
+  per_pixel += box_cost(parameters.rectify);
   const double passes = two_sided ? kTwoSidedPasses : 1;
   for (const Subject& subject : info.first.subjects) {
     const double motion = !plan.use_motion ? 0 : subject.backward ? kMotion : subject.forward ? kMotion + kInvert : 0;

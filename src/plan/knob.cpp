@@ -34,10 +34,6 @@ constexpr Word<bool> kSwitches[] = {
     {"on", true, "no overshoot beside bright edges"},
     {"off", false, "the filter as it is"},
 };
-constexpr Word<bool> kDiscounts[] = {
-    {"on", true, "a side weighs less the farther it had to be moved"},
-    {"off", false, "a side keeps its weight"},
-};
 constexpr Word<Disocclusion> kDisocclusions[] = {
     {"window", Disocclusion::window, "only where the previous position lies outside the data window"},
     {"depth", Disocclusion::depth, "also where another surface lay there; needs depth"},
@@ -80,25 +76,43 @@ constexpr Word<bool> kGains[] = {
 constexpr Word<Box> kBoxes[] = {
     {"none", Box::none, "history is used as it is"},
     {"minmax", Box::minmax, "least and greatest of the neighbors"},
+    {"rounded", Box::rounded, "mean of the minmax boxes of 3x3 and of the plus of five"},
+    {"dynamic4", Box::dynamic4, "minmax of four taps, 2/3 pixel away at rest and 1/2 at speed"},
     {"variance", Box::variance, "mean plus and minus --gamma standard deviations"},
     {"variance-minmax", Box::variance_minmax, "the variance box cut by the minmax box"},
+    {"kdop7", Box::kdop7, "minmax along 7 directions: the axes and the diagonals of the color cube"},
+    {"kdop13", Box::kdop13, "minmax along 13 directions: also the diagonals of its faces"},
+    {"pca", Box::pca, "minmax along the neighbors' own principal axes"},
+    {"ellipsoid", Box::ellipsoid, "within --gamma standard deviations of the mean in every direction"},
+    {"hull", Box::hull, "the exact convex hull of the neighbors"},
 };
-constexpr Word<int> kWindows[] = {
-    {"3", 3, "3x3 pixels: least ghosting"},
-    {"5", 5, "5x5 pixels"},
-    {"7", 7, "7x7 pixels: least noise"},
+constexpr Word<WindowMoments> kMoments[] = {
+    {"direct", WindowMoments::direct, "every neighbor is looked at: cost grows with the window's area"},
+    {"separable", WindowMoments::separable, "the same box, at a cost that does not grow with the window"},
+    {"gaussian", WindowMoments::gaussian, "neighbors weigh less towards the edge, by a bell; cost does not grow"},
+    {"pyramid", WindowMoments::pyramid,
+     "halved pictures, read between two levels: soft, approximate; cost does not grow"},
 };
 constexpr Word<BoxRule> kBoxRules[] = {
     {"clip", BoxRule::clip, "along the line to the anchor; keeps the hue of the anchor's side"},
     {"clamp", BoxRule::clamp, "each component by itself"},
+    {"project", BoxRule::project, "to the nearest color of the box, in the space of the box"},
+    {"off", BoxRule::off, "history keeps its color; only the clip distance is measured (and discounts)"},
 };
 constexpr Word<BoxAnchor> kBoxAnchors[] = {
     {"present", BoxAnchor::present, "towards the present pixel, held inside the box"},
     {"mean", BoxAnchor::mean, "towards the mean of the neighbors"},
+    {"center", BoxAnchor::center, "towards the center of the box"},
 };
 constexpr Word<BoxSpace> kBoxSpaces[] = {
     {"rgb", BoxSpace::rgb, "red, green, blue"},
     {"ycocg", BoxSpace::ycocg, "luma and two chroma axes: a tighter box around natural colors"},
+    {"log", BoxSpace::log,
+     "logarithm of red, green, blue; linear around zero, from six stops below the frame's median"},
+};
+constexpr Word<bool> kDiscounts[] = {
+    {"on", true, "history that had to be moved weighs less, by how far against the local noise"},
+    {"off", false, "clipped or not, history keeps its weight"},
 };
 
 template <class At, class T, std::size_t N>
@@ -109,6 +123,17 @@ Value<Parameters> word(At at, const Word<T> (&words)[N]) {
 template <class At>
 Value<Parameters> number(At at, Range range) {
   return number_value<Parameters>(at, range);
+}
+
+/// A window has a middle.
+template <class At>
+Value<Parameters> odd_number(At at, Range range) {
+  Value<Parameters> value = number_value<Parameters>(at, range);
+  value.allowed = "an odd" + value.allowed.substr(1);  // "a whole number from ..."
+  value.read = [read = value.read](Parameters& parameters, std::string_view text) {
+    return !text.empty() && (text.back() - '0') % 2 == 1 && read(parameters, text);
+  };
+  return value;
 }
 
 }  // namespace
@@ -163,11 +188,6 @@ std::vector<Knob> knobs() {
        "in. "
        "0 takes as many as hold 99 % of the weight: 44 at --alpha 0.1.",
        number([](auto& p) -> auto& { return p.two_sided.look_ahead; }, {0, 10000})},
-      {"clip-discount", "WORD", sides, advanced,
-       "Whether past or future lose weight where rectification moved them: by the square "
-       "of the distance over the variance of the neighbors.",
-       word(
-           [](auto& p) -> auto& { return p.two_sided.clip_discount; }, kDiscounts)},
       {"return-tolerance", "PIXELS", sides, expert,
        "How far a vector and the vector that leads back may miss each other, besides a hundredth of their lengths; "
        "beyond that the surface is hidden there, and the pixel follows a neighbor or restarts. 0: no test. Needs "
@@ -206,9 +226,13 @@ std::vector<Knob> knobs() {
        "Half size of the variance box in standard deviations. Near 0 history is pulled to the mean of the neighbors: "
        "no ghosts, no steadiness. Large values let history through: steady, but ghosts stay.",
        number([](auto& p) -> auto& { return p.rectify.gamma; }, {0, 100})},
-      {"window", "PIXELS", rectify, advanced, "Edge of the neighborhood that the box is made from.",
+      {"window", "PIXELS", rectify, advanced,
+       "Edge of the neighborhood that the box is made from: 3 has the fewest ghosts, large windows the least noise.",
+       odd_number([](auto& p) -> auto& { return p.rectify.window; }, {3, 63})},
+      {"moments", "WORD", rectify, advanced,
+       "How mean and deviation of the window are found, and least and greatest in windows beyond 3x3.",
        word(
-           [](auto& p) -> auto& { return p.rectify.window; }, kWindows)},
+           [](auto& p) -> auto& { return p.rectify.moments; }, kMoments)},
       {"rule", "WORD", rectify, advanced, "How history outside the box is brought onto it.",
        word(
            [](auto& p) -> auto& { return p.rectify.rule; }, kBoxRules)},
@@ -218,6 +242,15 @@ std::vector<Knob> knobs() {
       {"space", "WORD", rectify, expert, "Color space of the box.",
        word(
            [](auto& p) -> auto& { return p.rectify.space; }, kBoxSpaces)},
+      {"hull-passes", "NUMBER", rectify, expert,
+       "Refinements that --box hull may take under --rule clip, for speed. The exact answer needs 4 on average, 6 "
+       "nearly "
+       "always; with fewer more colors pass, down to 1, which is little more than the minmax box.",
+       number([](auto& p) -> auto& { return p.rectify.hull_passes; }, {1, 64})},
+      {"clip-discount", "WORD", rectify, advanced,
+       "Whether history loses weight where rectification moved it; with --accumulator two-sided past and future each.",
+       word(
+           [](auto& p) -> auto& { return p.rectify.clip_discount; }, kDiscounts)},
 
       {"depth-slope", "FACTOR", reject, expert,
        "Depth difference allowed under --disocclusion depth besides --depth-tolerance, as a multiple of how much the "

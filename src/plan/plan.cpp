@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "diagnose/aov.h"
 #include "plan/cost.h"
+#include "plan/describe_rectify.h"
 #include "plan/gather_plan.h"
 #include "plan/two_sided_plan.h"
 
@@ -44,6 +45,10 @@ void check_two_sided(const SequenceInfo& info, const Parameters& parameters) {
     throw Failure(ExitCode::usage,
                   "--accumulator two-sided drops what it does not believe; give --on-reject restart with it, or "
                   "--accumulator recursive");
+  if (parameters.rectify.rule == BoxRule::off && parameters.rectify.clip_discount)
+    throw Failure(ExitCode::usage,
+                  "--accumulator two-sided discounts what the box moved, and --rule off moves nothing; give another "
+                  "--rule, or --clip-discount off");
   if (!(parameters.recursive.weight == WeightParameters{}))
     throw Failure(ExitCode::usage,
                   "--accumulator two-sided weighs every sample by its age alone; leave out --feedback, --speed-alpha, "
@@ -60,6 +65,11 @@ void check_possible(const SequenceInfo& info, const Parameters& parameters) {
                       "the depth test needs a depth, and " + layer_text(subject) +
                           " has none; name it with --map depth=CHANNEL or --depth-file FILE, or "
                           "give --disocclusion window");
+  if (parameters.accumulator != Accumulator::gather) {
+    const std::string clash =
+        conflict(parameters.rectify, parameters.recursive, parameters.accumulator == Accumulator::recursive);
+    if (!clash.empty()) throw Failure(ExitCode::usage, clash);
+  }
   if (parameters.recursive.sample_filter == SampleFilter::none || parameters.accumulator == Accumulator::gather ||
       info.frames_with_jitter == int(info.frames.size()))
     return;
@@ -263,16 +273,12 @@ class Planner {
       add("rectify", false, "no history");
       return;
     }
-    const std::string edge = std::to_string(r.window), size = edge + "x" + edge;
-    const std::string space = r.space == BoxSpace::ycocg ? "YCoCg" : "RGB";
-    const std::string gamma = "gamma " + short_number(r.gamma);
-    const std::string kind = r.box == Box::minmax     ? "least and greatest"
-                             : r.box == Box::variance ? "variance, " + gamma
-                                                      : "variance, " + gamma + ", cut by least and greatest";
-    add("neighborhood box", true, "what history may say: " + kind + ", of " + size + " pixels in " + space);
-    add("rectify", true,
-        std::string(r.rule == BoxRule::clip ? "history is clipped towards the " : "history is clamped, anchor ") +
-            (r.anchor == BoxAnchor::present ? "present" : "mean") + ", which removes what is no longer there");
+    add("neighborhood box", true, "what history may say: " + describe_box(r));
+    add("rectify", true, describe_rule(r));
+    if (r.moments == WindowMoments::direct && r.window > 7)
+      plan_.notes.push_back("each pixel looks at " + std::to_string(r.window * r.window) +
+                            " neighbors, which is slow; --moments separable gives the variance box of that window at a "
+                            "cost that does not grow with it");
   }
 
   void blend() {

@@ -13,8 +13,9 @@ constexpr Preset kPresets[] = {
      "Variance clipping: sharp history along the longest vector, held to the noise of the present.",
      "accumulator=recursive dilation=longest alpha=0.1 alpha-rule=mean history-filter=catmull-rom dering=on "
      "disocclusion=window "
-     "sample-filter=none look-ahead=0 clip-discount=on return-tolerance=0.5 "
-     "box=variance gamma=1 window=3 rule=clip anchor=present space=rgb"},
+     "sample-filter=none look-ahead=0 return-tolerance=0.5 "
+     "box=variance gamma=1 window=3 moments=direct rule=clip anchor=present space=rgb hull-passes=64 "
+     "clip-discount=off"},
 };
 
 }  // namespace

@@ -33,7 +33,7 @@ std::string blend_of_both_sides(const Parameters& parameters) {
   text += parameters.recursive.alpha_rule == AlphaRule::fixed
               ? "a frame at distance k weighs (1 - " + alpha + ")^k"
               : "frames weigh the same until a side has the weight that alpha " + alpha + " leaves to it";
-  if (parameters.two_sided.clip_discount && parameters.rectify.box != Box::none)
+  if (parameters.rectify.clip_discount && parameters.rectify.box != Box::none)
     text += "; a side that was clipped weighs less";
   return text;
 }

@@ -6,6 +6,8 @@
 
 #include "resolve/accumulate_companions.h"
 #include "resolve/accumulate_row.h"
+#include "resolve/box_space.h"
+#include "resolve/rectify_shapes.h"
 #include "resolve/row_passes.h"
 #include "resolve/sample_weights.h"
 
@@ -29,23 +31,6 @@ template <class T>
 PixelRows<float> write_rows(Plane<T>& plane) {
   if (plane.empty()) return {nullptr, 0};
   return {floats(plane), plane.stride() * std::ptrdiff_t(sizeof(T) / sizeof(float))};
-}
-
-/// The neighborhood's samples in the space of the box, border and all.
-Plane<glm::vec4> rotate_to_ycocg(const Plane<glm::vec4>& color, Workers& workers) {
-  const Window& w = color.window();
-  const int b = color.border();
-  Plane<glm::vec4> out(w, b);
-  workers.for_rows(w.y0 - b, w.y1 + b, [&](int y) {
-    const glm::vec4* from = color.row(y) - b;
-    glm::vec4* to = out.row(y) - b;
-    for (int x = 0; x < w.width() + 2 * b; ++x) {
-      const glm::vec4 c = from[x];
-      const float rb = c.r * 0.25f + c.b * 0.25f;
-      to[x] = {rb + c.g * 0.5f, c.r * 0.5f - c.b * 0.5f, c.g * 0.5f - rb, c.a};
-    }
-  });
-  return out;
 }
 
 /// The steps of a row, as compiled for one processor.
@@ -105,9 +90,10 @@ History make_history(const Window& w) {
 
 /// The present as the kernel reads it, and the planes made for that.
 struct PresentView {
-  WeighedPresent weighed;    // what is blended in where samples are weighed by their position
-  Plane<glm::vec4> rotated;  // the neighborhood in the space of the box
-  Plane<glm::vec2> at_rest;  // without vectors every pixel stays where it is
+  WeighedPresent weighed;     // what is blended in where samples are weighed by their position
+  BoxSpaceMap space;          // of the box
+  Plane<glm::vec4> in_space;  // the neighborhood in the space of the box
+  Plane<glm::vec2> at_rest;   // without vectors every pixel stays where it is
   std::vector<std::uint8_t> rows_valid;
 };
 
@@ -117,14 +103,16 @@ PresentView view_present(AccumulateView& v, const Present& present, const Rectif
   PresentView made;
   if (sample_filter != SampleFilter::none && jitter)
     made.weighed = weigh_samples(present, sample_filter, *jitter, workers);
-  if (rectify.box != Box::none && rectify.space == BoxSpace::ycocg)
-    made.rotated = rotate_to_ycocg(present.color, workers);
+  if (rectify.box != Box::none) {
+    made.space = box_space_map(rectify.space, present, workers);
+    made.in_space = plane_in_box_space(made.space, present.color, workers);
+  }
   if (present.motion.empty()) made.at_rest = Plane<glm::vec2>(w, 0, glm::vec2(0.0f));
 
   v.width = w.width();
   v.height = w.height();
   v.color = read_rows(made.weighed.color.empty() ? present.color : made.weighed.color);
-  v.neighbors = read_rows(made.rotated.empty() ? present.color : made.rotated);
+  v.neighbors = read_rows(made.in_space.empty() ? present.color : made.in_space);
   v.weight = read_rows(present.valid);
   v.motion = read_rows(present.motion.empty() ? made.at_rest : present.motion);
   v.sample_weight = read_rows(made.weighed.sample_weight);
@@ -185,54 +173,106 @@ void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const
   v.gamma = rectify.gamma;
 }
 
+ShapeRules shape_rules(const RectifyParameters& rectify, const RecursiveParameters& recursive,
+                       const PresentView& made) {
+  return {rectify, made.space, recursive.alpha, made.weighed.color.empty()};
+}
+
 /// What stands between and after the steps of the kernel; null: nothing.
 struct RowSteps {
-  const RowPassView& passes;
+  const ShapeRules shapes;
+  const RowPassView passes;
   const RowPass* fetched = nullptr;
   const RowPass* rectified = nullptr;  ///< stands in place of the blend, and of what weighs it
   const CompanionPass* companions = nullptr;
 };
 
-void run_row(const AccumulateView& v, const RowSteps& steps, const RowKernel& kernel, int y, Scratch& scratch,
-             int worker) {
-  const RowPassView& passes = steps.passes;
-  const RowScratch rows = scratch.view();
-  const RowPassScratch extra = scratch.extra();
-  kernel.fetch_history(v, y, rows);
-  if (passes.tests_surfaces || passes.tests_vectors) test_history(passes, y, rows, extra);
-  if (passes.weighs && passes.parameters.weight.anti_flicker > 0) find_clip_events(passes, y, rows, extra);
-  if (steps.fetched) (*steps.fetched)(v, y, rows, worker);
-  kernel.rectify_history(v, y, rows, scratch.counts);
-  if (steps.rectified) {
-    if (passes.tests_surfaces || passes.tests_vectors)
-      for (int x = 0; x < v.width; ++x) rows.total[x] *= extra.trust[x];
-    (*steps.rectified)(v, y, rows, worker);
-  } else {
-    if (passes.weighs) weigh_present(passes, y, rows, extra);
-    kernel.blend_present(v, y, rows, scratch.counts);
-    if (passes.finishes) finish_row(passes, y, rows, extra);
-    if (steps.companions) accumulate_companions(v, y, rows, passes, *steps.companions);
+/// Rows through the steps; what the row kernel has no code to rectify goes through the shapes instead.
+class RowRunner {
+ public:
+  RowRunner(const AccumulateView& v, const RowSteps& steps, Isa isa, Workers& workers)
+      : v_(v),
+        steps_(steps),
+        shapes_(needs_shapes(steps.shapes.rectify) ? &steps.shapes : nullptr),
+        kernel_(kernel_for(isa)),
+        workers_(workers),
+        room_(std::size_t(workers.count())) {
+    for (int i = 0; i < workers.count(); ++i) scratch_.emplace_back(v.width, steps.passes.weighs);
   }
-  count_bits(rows.reject, v.width, scratch.rejected);
-}
+
+  AccumulateCounts all_rows() {
+    if (!shapes_) {
+      run(0, v_.height);
+    } else {
+      prepare_frame(v_, *shapes_, contents_, workers_);
+      const int rows = band_rows(*shapes_, v_.height);
+      for (int begin = 0; begin < v_.height; begin += rows) {
+        const int end = std::min(v_.height, begin + rows);
+        prepare_band(v_, *shapes_, begin, end, contents_, workers_);
+        run(begin, end);
+      }
+    }
+    return sum_of_counts();
+  }
+
+ private:
+  void run(int begin, int end) {
+    constexpr int kBand = 8;  // rows: neighbors share what is in the cache
+    workers_.for_each(std::size_t((end - begin + kBand - 1) / kBand), [&](std::size_t band, int worker) {
+      const int first = begin + int(band) * kBand;
+      for (int y = first; y < std::min(end, first + kBand); ++y) run_row(y, worker);
+    });
+  }
+
+  void run_row(int y, int worker) {
+    const RowPassView& passes = steps_.passes;
+    Scratch& scratch = scratch_[std::size_t(worker)];
+    const RowScratch rows = scratch.view();
+    const RowPassScratch extra = scratch.extra();
+    const bool tests = passes.tests_surfaces || passes.tests_vectors;
+    kernel_.fetch_history(v_, y, rows);
+    if (tests) test_history(passes, y, rows, extra);
+    if (passes.weighs && passes.parameters.weight.anti_flicker > 0) find_clip_events(passes, y, rows, extra);
+    if (steps_.fetched) (*steps_.fetched)(v_, y, rows, worker);
+    if (shapes_)
+      rectify_shapes(v_, *shapes_, contents_, y, rows, room_[std::size_t(worker)], scratch.counts);
+    else
+      kernel_.rectify_history(v_, y, rows, scratch.counts);
+    if (steps_.rectified) {
+      for (int x = 0; tests && x < v_.width; ++x) rows.total[x] *= extra.trust[x];
+      (*steps_.rectified)(v_, y, rows, worker);
+    } else {
+      if (passes.weighs) weigh_present(passes, y, rows, extra);
+      kernel_.blend_present(v_, y, rows, scratch.counts);
+      if (passes.finishes) finish_row(passes, y, rows, extra);
+      if (steps_.companions) accumulate_companions(v_, y, rows, passes, *steps_.companions);
+    }
+    count_bits(rows.reject, v_.width, scratch.rejected);
+  }
+
+  AccumulateCounts sum_of_counts() const {
+    AccumulateCounts sum;
+    for (const Scratch& s : scratch_) {
+      sum.restarted += s.counts.restarted;
+      sum.clipped += s.counts.clipped;
+      sum.vectors_bad += s.counts.vectors_bad;
+      for (std::size_t bit = 0; bit < sum.rejected.size(); ++bit) sum.rejected[bit] += s.rejected[bit];
+    }
+    return sum;
+  }
+
+  const AccumulateView& v_;
+  const RowSteps& steps_;
+  const ShapeRules* shapes_;
+  RowKernel kernel_;
+  Workers& workers_;
+  WindowContents contents_;
+  std::vector<Scratch> scratch_;
+  std::vector<ShapeScratch> room_;
+};
 
 AccumulateCounts run_rows(const AccumulateView& v, const RowSteps& steps, Isa isa, Workers& workers) {
-  const RowKernel kernel = kernel_for(isa);
-  std::vector<Scratch> scratch;
-  for (int i = 0; i < workers.count(); ++i) scratch.emplace_back(v.width, steps.passes.weighs);
-  constexpr int kBand = 8;  // rows: neighbors share what is in the cache
-  workers.for_each(std::size_t((v.height + kBand - 1) / kBand), [&](std::size_t band, int worker) {
-    const int end = std::min(v.height, int(band + 1) * kBand);
-    for (int y = int(band) * kBand; y < end; ++y) run_row(v, steps, kernel, y, scratch[std::size_t(worker)], worker);
-  });
-  AccumulateCounts sum;
-  for (const Scratch& s : scratch) {
-    sum.restarted += s.counts.restarted;
-    sum.clipped += s.counts.clipped;
-    sum.vectors_bad += s.counts.vectors_bad;
-    for (std::size_t bit = 0; bit < sum.rejected.size(); ++bit) sum.rejected[bit] += s.rejected[bit];
-  }
-  return sum;
+  return RowRunner(v, steps, isa, workers).all_rows();
 }
 
 }  // namespace
@@ -266,16 +306,22 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
       like.valid = present.valid.clone();
       return weigh_samples(like, recursive.sample_filter, *jitter, workers).color;
     };
-  const RowPassView passes = row_passes_for(v, present, previous, recursive);
   const CompanionPass companions = view_companions(v, present, previous, reconstruct, out.history);
-  out.counts = run_rows(v, {passes, nullptr, nullptr, companions.empty() ? nullptr : &companions}, isa, workers);
+  out.counts = run_rows(v,
+                        {shape_rules(rectify, recursive, made), row_passes_for(v, present, previous, recursive),
+                         nullptr, nullptr, companions.empty() ? nullptr : &companions},
+                        isa, workers);
   if (!wanted.weight) out.diagnostics.weight = {};
   remember_surfaces(out.history, present, recursive);
   return out;
 }
 
 History predict(const Present& present, const History& previous, const RecursiveParameters& recursive,
-                const RectifyParameters& rectify, Workers& workers) {
+                const RectifyParameters& asked, Workers& workers) {
+  RectifyParameters rectify = asked;
+  rectify.anchor = BoxAnchor::mean;
+  // What one pixel counts in a bell or a pyramid is not known afterwards; in the plain window of that size it is.
+  if (rectify.moments != WindowMoments::direct) rectify.moments = WindowMoments::separable;
   Accumulated out{make_history(present.color.window()), {}, {}};
   if (present.color.window().empty()) return std::move(out.history);
   AccumulateView v{};
@@ -283,12 +329,11 @@ History predict(const Present& present, const History& previous, const Recursive
   view_history(v, present, previous, recursive);
   view_output(v, out, {});
   view_choices(v, recursive, rectify);
-  v.anchor = BoxAnchor::mean;
   v.leave_present_out = true;
   // Only what tells whether there is a history; how it would have been weighed does not matter here.
   RowPassView passes = row_passes_for(v, present, previous, recursive);
   passes.finishes = false;
-  run_rows(v, {passes}, Isa::automatic, workers);
+  run_rows(v, {shape_rules(rectify, recursive, made), passes}, Isa::automatic, workers);
   return std::move(out.history);
 }
 
@@ -304,8 +349,9 @@ AccumulateCounts visit_history(const Present& present, const History& previous, 
   view_diagnostics(v, present.color.window(), diagnostics, wanted);
   view_choices(v, recursive, rectify);
   v.restart_bit = restart_bit;
-  const RowPassView passes = row_passes_for(v, present, previous, recursive);
-  return run_rows(v, {passes, &fetched, &rectified}, isa, workers);
+  return run_rows(
+      v, {shape_rules(rectify, recursive, made), row_passes_for(v, present, previous, recursive), &fetched, &rectified},
+      isa, workers);
 }
 
 }  // namespace varve

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -36,11 +37,18 @@ struct RecursiveParameters {
 struct RectifyParameters {
   Box box = Box::variance;
   double gamma = 1.0;  ///< half size of the variance box in standard deviations
-  int window = 3;      ///< edge of the neighborhood: 3, 5 or 7
+  int window = 3;      ///< edge of the neighborhood, odd, 3 to 63
+  WindowMoments moments = WindowMoments::direct;
   BoxRule rule = BoxRule::clip;
-  BoxAnchor anchor = BoxAnchor::present;  ///< clip towards the present (held inside the box) or the mean
+  BoxAnchor anchor = BoxAnchor::present;  ///< where rule clip leads; held inside the box
   BoxSpace space = BoxSpace::rgb;
+  int hull_passes = 64;        ///< cap on the refinements of the exact hull, at least 1
+  bool clip_discount = false;  ///< history that had to be moved weighs less
 };
+
+/// Why these choices do not go together, with the remedy; empty when they do. `weight_by_age`: a history counts as many
+/// samples only under AlphaRule::mean.
+std::string conflict(const RectifyParameters& rectify, const RecursiveParameters& recursive, bool weight_by_age = true);
 
 /// What one frame leaves to the next. Made only by accumulate(); empty before the first frame and after a cut.
 struct History {
@@ -102,7 +110,8 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
                        const DiagnosticsWanted& wanted, Workers& workers, Isa isa = Isa::automatic);
 
 /// What the frames before say of the present: the history as accumulate() would fetch it, rectified by the neighborhood
-/// without the pixel itself and towards its mean. color is 0 and total 0 where there is no history.
+/// without the pixel itself and towards its mean. color is 0 and total 0 where there is no history. Gaussian and
+/// pyramid moments are taken as those of the plain window.
 /// The sample of the pixel has no part in it, but its neighbors do, and a jittered frame shifts all its samples alike:
 /// the difference to the sample favors tight boxes. For ranking settings see diagnose/leave_out.h.
 History predict(const Present& present, const History& previous, const RecursiveParameters& recursive,

@@ -124,6 +124,14 @@ void rectify_history(const AccumulateView& v, int y, const RowScratch& s, RowCou
       return rectify_row<Box::variance>(v, y, s, counts);
     case Box::variance_minmax:
       return rectify_row<Box::variance_minmax>(v, y, s, counts);
+    case Box::rounded:
+    case Box::dynamic4:
+    case Box::kdop7:
+    case Box::kdop13:
+    case Box::pca:
+    case Box::ellipsoid:
+    case Box::hull:
+      return;  // rectify_shapes() runs instead of this step
   }
 }
 

@@ -12,10 +12,13 @@ enum class Accumulator { recursive, two_sided, gather };
 enum class HistoryFilter { bilinear, catmull_rom, catmull_rom9, catmull_rom5 };
 
 /// What the neighborhood of the present allows history to be.
-enum class Box { none, minmax, variance, variance_minmax };
-enum class BoxRule { clip, clamp };
-enum class BoxAnchor { present, mean };
-enum class BoxSpace { rgb, ycocg };
+enum class Box { none, minmax, rounded, dynamic4, variance, variance_minmax, kdop7, kdop13, pca, ellipsoid, hull };
+enum class BoxRule { clip, clamp, project, off };
+enum class BoxAnchor { present, mean, center };
+enum class BoxSpace { rgb, ycocg, log };
+
+/// How mean and deviation of a window are found.
+enum class WindowMoments { direct, separable, gaussian, pyramid };
 
 /// Weight of the present: fixed, or max(alpha, 1/n) while n frames have been seen (Yang 2009, slide 9).
 enum class AlphaRule { fixed, mean };

@@ -168,7 +168,9 @@ AccumulateCounts walk_rows(const Present& present, const History& beyond, const 
   const int width = present.color.window().width();
   std::vector<std::vector<glm::vec4>> fetched(std::size_t(workers.count()), std::vector<glm::vec4>(std::size_t(width)));
   std::vector<std::size_t> bad(std::size_t(workers.count())), alone(bad);
-  const bool discounts = two_sided.clip_discount && rectify.box != Box::none;
+  const bool discounts = rectify.clip_discount && rectify.box != Box::none;
+  RectifyParameters undiscounted = rectify;
+  undiscounted.clip_discount = false;  // done here, by this accumulator's own weights
   const auto keep = [&](const AccumulateView& v, int, const RowScratch& s, int worker) {
     if (discounts)
       for (int x = 0; x < v.width; ++x)
@@ -186,8 +188,8 @@ AccumulateCounts walk_rows(const Present& present, const History& beyond, const 
     blend_into_state(v, y, s, state);
     finish(v, y, s);
   };
-  AccumulateCounts counts = visit_history(present, beyond, recursive, rectify, jitter, restart_bit, wanted, diagnostics,
-                                          keep, move_on, workers, isa);
+  AccumulateCounts counts = visit_history(present, beyond, recursive, undiscounted, jitter, restart_bit, wanted,
+                                          diagnostics, keep, move_on, workers, isa);
   for (const std::size_t n : alone) counts.restarted += n;
   for (const std::size_t n : bad) counts.vectors_bad += n;
   return counts;

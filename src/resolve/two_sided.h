@@ -11,9 +11,6 @@
 namespace varve {
 
 struct TwoSidedParameters {
-  /// A side that had to be moved by d into the box weighs W / (1 + W d^2 / r), r the local variance of one sample: the
-  /// variance r / W it had, and the bias d it showed.
-  bool clip_discount = true;
   int look_ahead = 0;  ///< frames; 0: as many as hold 99 % of a side's weight
   double return_tolerance =
       0.5;  ///< px, besides a hundredth of the lengths: how far there and back may miss; 0: no test
@@ -22,7 +19,9 @@ struct TwoSidedParameters {
 /// Frames that a side reaches at least: those that hold 99 % of its weight, ln(.01) / ln(1 - alpha), or what was asked.
 int look_ahead_frames(const TwoSidedParameters& two_sided, double alpha);
 
-/// Weight left to a side of weight `total` that was moved by d, given d^2 / r.
+/// Weight left to a side of weight `total` that was moved by d into the box, given d^2 / r, r the local variance of one
+/// sample: W / (1 + W d^2 / r), for the variance r / W it had, and the bias d it showed.
+/// RectifyParameters::clip_discount asks for it.
 double discounted_weight(double total, double d2_over_r);
 
 /// What one side of time says of a frame, its present left out; where it says nothing, total is 0.

@@ -27,7 +27,8 @@ class TwoSidedCli : public testing::Test {
   /// Resolves in/SCENE into `to`.
   Outcome resolve(const std::string& scene, const std::string& to, const Arguments& more = {}) const {
     fs::create_directories(folder / to);
-    Arguments line = {"resolve", "in/" + scene + ".####.exr", "-o", to + "/o.####.exr", "--accumulator", "two-sided"};
+    Arguments line = {"resolve",   "in/" + scene + ".####.exr", "-o", to + "/o.####.exr", "--accumulator",
+                      "two-sided", "--clip-discount",           "on"};
     line.insert(line.end(), more.begin(), more.end());
     return run_varve(line, folder.path());
   }

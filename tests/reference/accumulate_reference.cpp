@@ -14,16 +14,6 @@ namespace {
 
 Color color_of(const glm::vec4& c) { return {c.r, c.g, c.b, c.a}; }
 
-Color rotate(const Color& c, BoxSpace space) {
-  if (space == BoxSpace::rgb) return c;
-  return {c[0] / 4 + c[1] / 2 + c[2] / 4, c[0] / 2 - c[2] / 2, -c[0] / 4 + c[1] / 2 - c[2] / 4, c[3]};
-}
-
-Color rotate_back(const Color& c, BoxSpace space) {
-  if (space == BoxSpace::rgb) return c;
-  return {c[0] + c[1] - c[2], c[0] + c[2], c[0] - c[1] - c[2], c[3]};
-}
-
 /// Keys' cubic with a = -1/2, as a function of the distance.
 double keys(double t) {
   t = std::abs(t);
@@ -125,71 +115,6 @@ Fetched fetch(const History& h, const Present& present, const RecursiveParameter
   return f;
 }
 
-struct BoxBounds {
-  Color low, high, mean;
-};
-
-std::optional<BoxBounds> box_of(const Present& present, const RectifyParameters& p, int x, int y,
-                                bool with_centre = true) {
-  std::vector<Color> samples;
-  const int r = p.window / 2;
-  for (int j = y - r; j <= y + r; ++j)
-    for (int i = x - r; i <= x + r; ++i)
-      if (present.color.window().contains(i, j) && present.valid.at(i, j) > 0 && (with_centre || i != x || j != y))
-        samples.push_back(rotate(color_of(present.color.at(i, j)), p.space));
-  if (samples.empty()) return {};
-  BoxBounds b;
-  for (std::size_t k = 0; k < 4; ++k) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    long double sum = 0;
-    for (const Color& c : samples) low = std::min(low, c[k]), high = std::max(high, c[k]), sum += c[k];
-    const long double mean = sum / static_cast<long double>(samples.size());
-    long double m2 = 0;
-    for (const Color& c : samples) m2 += (c[k] - mean) * (c[k] - mean);
-    const double sigma = double(std::sqrt(m2 / static_cast<long double>(samples.size())));
-    b.mean[k] = p.box == Box::minmax ? low / 2 + high / 2 : double(mean);
-    b.low[k] = p.box == Box::minmax ? low : double(mean) - p.gamma * sigma;
-    b.high[k] = p.box == Box::minmax ? high : double(mean) + p.gamma * sigma;
-    if (p.box == Box::variance_minmax) b.low[k] = std::max(b.low[k], low), b.high[k] = std::min(b.high[k], high);
-  }
-  const double scale = std::max({std::abs(b.mean[0]), std::abs(b.mean[1]), std::abs(b.mean[2])});
-  for (std::size_t k = 0; k < 4; ++k) {
-    const double floor = 1e-6 * (k < 3 ? scale : std::abs(b.mean[3]));
-    b.low[k] -= floor;
-    b.high[k] += floor;
-  }
-  return b;
-}
-
-double length3(const Color& c) { return std::hypot(c[0], c[1], c[2]); }
-
-/// Moves the history into the box; returns the clip distance.
-double rectify_color(Color& color, const Color& present, const BoxBounds& b, const RectifyParameters& p) {
-  const Color h = rotate(color, p.space);
-  bool inside = true;
-  for (std::size_t k = 0; k < 4; ++k) inside = inside && h[k] >= b.low[k] && h[k] <= b.high[k];
-  if (inside) return 0;
-  Color moved;
-  if (p.rule == BoxRule::clamp) {
-    for (std::size_t k = 0; k < 4; ++k) moved[k] = std::clamp(h[k], b.low[k], b.high[k]);
-  } else {
-    const Color target = p.anchor == BoxAnchor::mean ? b.mean : rotate(present, p.space);
-    double t = 1;
-    Color g;
-    for (std::size_t k = 0; k < 4; ++k) {
-      g[k] = std::clamp(target[k], b.low[k], b.high[k]);
-      if (h[k] > b.high[k]) t = std::min(t, (b.high[k] - g[k]) / (h[k] - g[k]));
-      if (h[k] < b.low[k]) t = std::min(t, (g[k] - b.low[k]) / (g[k] - h[k]));
-    }
-    for (std::size_t k = 0; k < 4; ++k) moved[k] = g[k] + t * (h[k] - g[k]);
-  }
-  const Color before = color;
-  color = rotate_back(moved, p.space);
-  const Color change{color[0] - before[0], color[1] - before[1], color[2] - before[2], 0};
-  const double scale = std::max(length3(before), length3(color));
-  return scale > 0 ? length3(change) / scale : 0;
-}
-
 /// What the tests leave of a fetched history; returns its trust.
 double judge_history(Fetched& past, const Present& present, const History& previous, const RecursiveParameters& p,
                      int x, int y) {
@@ -253,8 +178,14 @@ Pixel rectified_history(const Present& present, const History& previous, const R
   out.reject = past.reject | (present.valid.at(x, y) > 0 ? 0u : unsigned(kRejectPresent));
   fetched = past.color;
   if (past.total <= 0) return out;
-  if (rectify.box != Box::none)
-    if (const auto box = box_of(present, rectify, x, y)) out.clip = rectify_color(past.color, now, *box, rectify);
+  if (const auto held = reference::rectify(present, rectify, past.color, now, x, y, true)) {
+    past.color = held->color;
+    out.clip = held->clip;
+    if (rectify.clip_discount && held->distance > 0) {
+      const double count = std::min(past.total, (1 - p.alpha) / p.alpha);
+      past.total = std::max(1e-30, count / (1 + count * held->distance * held->distance / held->noise));
+    }
+  }
   out.color = past.color;
   out.total = past.total;
   out.spread = past.spread;
@@ -307,8 +238,8 @@ Pixel predict_pixel(const Present& present, const History& previous, const Recur
   out.total = past.total;
   RectifyParameters towards_mean = rectify;
   towards_mean.anchor = BoxAnchor::mean;
-  if (rectify.box != Box::none)
-    if (const auto box = box_of(present, rectify, x, y, false)) rectify_color(out.color, {}, *box, towards_mean);
+  if (towards_mean.moments != WindowMoments::direct) towards_mean.moments = WindowMoments::separable;
+  if (const auto held = reference::rectify(present, towards_mean, past.color, {}, x, y, false)) out.color = held->color;
   return out;
 }
 

@@ -1,17 +1,15 @@
 // The slow twin of the recursive accumulator: one pixel at a time, in double, straight from the equations.
 #pragma once
 
-#include <array>
 #include <optional>
 
 #include <glm/vec2.hpp>
 
 #include "motion/motion.h"
+#include "reference/rectify_reference.h"
 #include "resolve/accumulate.h"
 
 namespace varve::reference {
-
-using Color = std::array<double, 4>;
 
 struct Pixel {
   Color color{};

@@ -42,7 +42,9 @@ TEST(Knobs, AreIndependent) {
   for (const Knob& knob : table) {
     Parameters parameters;
     const std::string standard = knob.value.show(parameters);
-    std::string other = standard == "0.5" ? "0.25" : "0.5";
+    std::string other;
+    for (const char* number : {"0.5", "0.25", "7", "9"})
+      if (Parameters tried; other.empty() && number != standard && knob.value.read(tried, number)) other = number;
     for (const Choice& choice : knob.value.choices)
       if (choice.word != standard) other = choice.word;
     if (!knob.value.read(parameters, other)) other = "2";  // whole numbers only

@@ -24,6 +24,8 @@ struct Settings {
   RectifyParameters rectify;
   TwoSidedParameters two_sided;
   std::optional<glm::dvec2> jitter;
+
+  Settings() { rectify.clip_discount = true; }
 };
 
 Settings plain_sums(double alpha = 0.1) {
@@ -94,7 +96,7 @@ std::vector<Settings> many_settings() {
           s.recursive.history_filter = filter;
           s.recursive.alpha_rule = rule;
           s.rectify.box = box;
-          s.two_sided.clip_discount = discount;
+          s.rectify.clip_discount = discount;
           all.push_back(s);
         }
   Settings samples;
@@ -309,7 +311,7 @@ TEST(TwoSided, ASideThatHadToBeClippedLosesItsWeight) {
     return sum / (3 * 60 * 60);
   };
   Settings s, plain;
-  plain.two_sided.clip_discount = false;
+  plain.rectify.clip_discount = false;
   const History past = history(0);
   const StrictSide nothing = side(present, {}, s, workers).strict;
   const double alone = error(both(present, past, nothing, s, workers).resolved);
