@@ -138,7 +138,8 @@ bool is_needed(const std::vector<ScheduledFrame>& schedule, std::size_t index) {
 struct Resolved {
   Present present;
   Accumulated accumulated;
-  History prediction;  ///< only where the diagnostic plane of that name is asked for
+  History prediction;         ///< only where the diagnostic plane of that name is asked for
+  Plane<glm::vec4> finished;  ///< what is written, where that is not what the history keeps
 };
 
 Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHeaders& headers, const FileSet& pixels,
@@ -158,6 +159,8 @@ Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHead
   const auto is_prediction = [](const Aov* aov) { return aov->name == "prediction"; };
   if (std::any_of(s.aovs.begin(), s.aovs.end(), is_prediction))
     r.prediction = predict(r.present, state.history, parameters.recursive, parameters.rectify, workers);
+  if (parameters.finish.sharpen > 0 && scheduled.write)
+    r.finished = sharpen(r.accumulated.history.color, r.accumulated.history.total, parameters.finish.sharpen, workers);
   report.pixels += part.data_window.pixels();
   report.not_finite += r.present.not_finite;
   report.restarted += r.accumulated.counts.restarted;
@@ -254,8 +257,8 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
       resolved.push_back(
           resolve_subject(s, headers.subjects[k], headers, pixels, scheduled, states[k], report, workers));
     for (std::size_t k = 0; k < resolved.size(); ++k)
-      subjects.push_back(
-          {&headers.subjects[k], &resolved[k].present, &resolved[k].accumulated, &resolved[k].prediction});
+      subjects.push_back({&headers.subjects[k], &resolved[k].present, &resolved[k].accumulated, &resolved[k].prediction,
+                          &resolved[k].finished});
     report.resolve_seconds = clock.lap();
     if (stop()) break;
 

@@ -22,7 +22,16 @@ constexpr CodecCost kNone{0.2, 0.9}, kLight{1.5, 3}, kZip{1.9, 6}, kPiz{5, 11}, 
 // Nanoseconds per pixel and pass, one thread with AVX2, as tests/bench/passes_bench prints them; inversion of forward
 // vectors, depth test and diagnostics are set by their traffic and not measured yet.
 constexpr double kConvert = 1.5, kSanitize = 1.6, kMotion = 1.1, kInvert = 12, kDilate = 8.5, kHistory = 22,
-                 kDepthTest = 1, kSampleWeights = 20, kBox = 28, kBlend = 8, kDiagnostic = 0.5;
+                 kDepthTest = 1, kSampleWeights = 20, kBox = 28, kBlend = 8, kDiagnostic = 0.5, kCubic = 60,
+                 kBspline3 = 110, kBspline5 = 190, kUnjitter = 20, kSharpen = 60;
+
+/// Of reading history.
+double cost_of(HistoryFilter filter) {
+  return filter == HistoryFilter::cubic      ? kCubic
+         : filter == HistoryFilter::bspline3 ? kBspline3
+         : filter == HistoryFilter::bspline5 ? kBspline5
+                                             : kHistory;
+}
 
 CodecCost cost_of(Compression compression) {
   switch (compression) {
@@ -109,11 +118,15 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
     if (!whole.contains({ref.file, ref.part}))
       raw += bytes_of(part_of(info, ref), part_of(info, ref).channels[std::size_t(ref.channel)]);
   const bool depth_test = plan.use_depth && parameters.recursive.disocclusion == Disocclusion::depth;
+  const HistoryFilter filter = parameters.recursive.history_filter;
+  // Planes of color beside the present: B-spline coefficients, the reconstructed present, the sharpened result.
+  const std::size_t extra = 16 * std::size_t((filter == HistoryFilter::bspline3 || filter == HistoryFilter::bspline5) +
+                                             plan.use_jitter + (parameters.finish.sharpen > 0));
   std::size_t histories = 0, at_work = 0;
   for (const Subject& subject : info.first.subjects) {
     const std::size_t pixels = pixels_of(info, subject);
     histories += pixels * (2 * (16 + 8) + (depth_test ? 4 : 0));  // color, count and weight; depth of the last frame
-    at_work = std::max(at_work, pixels * (16 + (plan.use_motion ? 8 : 0) + (plan.use_depth ? 4 : 0) +
+    at_work = std::max(at_work, pixels * (16 + extra + (plan.use_motion ? 8 : 0) + (plan.use_depth ? 4 : 0) +
                                           diagnostic_bytes_per_pixel(output)));
   }
   return kBaseBytes + raw + histories + at_work;
@@ -140,10 +153,13 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
     nanoseconds += double(color_bytes(info)) * kZip.encode;
   }
   const RecursiveParameters& recursive = parameters.recursive;
-  double per_pixel = kConvert + kSanitize + kBlend + kHistory + double(diagnostic_bytes) * (kDiagnostic + kZip.encode);
+  double per_pixel = kConvert + kSanitize + kBlend + cost_of(recursive.history_filter) +
+                     double(diagnostic_bytes) * (kDiagnostic + kZip.encode);
   if (plan.use_motion && parameters.motion.dilation != Dilation::none) per_pixel += kDilate;
   if (recursive.disocclusion == Disocclusion::depth) per_pixel += kDepthTest;
   if (recursive.sample_filter != SampleFilter::none) per_pixel += kSampleWeights;
+  if (recursive.unjitter != Unjitter::none) per_pixel += kUnjitter;
+  if (parameters.finish.sharpen > 0) per_pixel += kSharpen;
   if (parameters.rectify.box != Box::none) per_pixel += kBox * std::max(1, parameters.rectify.window) / 3;
   for (const Subject& subject : info.first.subjects) {
     const double motion = !plan.use_motion ? 0 : subject.backward ? kMotion : subject.forward ? kMotion + kInvert : 0;

@@ -5,6 +5,7 @@
 
 #include "motion/motion.h"
 #include "resolve/accumulate.h"
+#include "resolve/sharpen.h"
 
 namespace varve {
 
@@ -13,6 +14,7 @@ struct Parameters {
   MotionParameters motion;
   RecursiveParameters recursive;
   RectifyParameters rectify;
+  FinishParameters finish;
 };
 
 }  // namespace varve

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "diagnose/aov.h"
 #include "plan/cost.h"
+#include "plan/expansive.h"
 
 namespace varve {
 namespace {
@@ -31,8 +32,23 @@ bool has_depth(const Subject& s) { return s.depth.has_value(); }
 bool only_forward(const Subject& s) { return !s.backward && s.forward; }
 bool has_motion(const Subject& s) { return s.backward || s.forward; }
 
+// Choices that no sequence can make possible.
+void check_filters(const RecursiveParameters& recursive) {
+  if (recursive.history_filter == HistoryFilter::cubic) {
+    const LargestGain gain = cubic_gain(recursive.cubic_b, recursive.cubic_c);
+    if (is_expansive(gain))
+      throw Failure(ExitCode::usage, expansive_filter_text("cubic with cubic-b " + short_number(recursive.cubic_b) +
+                                                               " and cubic-c " + short_number(recursive.cubic_c),
+                                                           gain));
+  }
+  if (recursive.unjitter != Unjitter::none && recursive.sample_filter != SampleFilter::none)
+    throw Failure(ExitCode::usage,
+                  "--unjitter and --sample-filter both bring the present to the pixel centers; give one of them");
+}
+
 // What was asked for outright and cannot be done. Falling back silently would change the picture without a word.
 void check_possible(const SequenceInfo& info, const Parameters& parameters) {
+  check_filters(parameters.recursive);
   if (parameters.recursive.disocclusion == Disocclusion::depth)
     for (const Subject& subject : info.first.subjects)
       if (!subject.depth)
@@ -40,16 +56,17 @@ void check_possible(const SequenceInfo& info, const Parameters& parameters) {
                       "the depth test needs a depth, and " + layer_text(subject) +
                           " has none; name it with --map depth=CHANNEL or --depth-file FILE, or "
                           "give --disocclusion window");
-  if (parameters.recursive.sample_filter == SampleFilter::none || info.frames_with_jitter == int(info.frames.size()))
+  const bool weigh = parameters.recursive.sample_filter != SampleFilter::none;
+  if ((!weigh && parameters.recursive.unjitter == Unjitter::none) || info.frames_with_jitter == int(info.frames.size()))
     return;
   const std::string known = info.frames_with_jitter == 0
                                 ? "is not known"
                                 : "is known for " + std::to_string(info.frames_with_jitter) + " of " +
                                       std::to_string(info.frames.size()) + " frames only";
-  throw Failure(ExitCode::inconsistent, "weighting by sample positions needs the jitter of every frame, which " +
-                                            known +
-                                            "; give it with --jitter FILE or --jitter halton23:N, or give "
-                                            "--sample-filter none");
+  throw Failure(ExitCode::inconsistent, std::string(weigh ? "weighting by sample positions" : "undoing the jitter") +
+                                            " needs the jitter of every frame, which " + known +
+                                            "; give it with --jitter FILE or --jitter halton23:N, or give " +
+                                            (weigh ? "--sample-filter none" : "--unjitter none"));
 }
 
 /// Adds the passes in running order and remembers what they need.
@@ -100,9 +117,13 @@ class Planner {
   }
 
   void history() {
-    constexpr std::array<const char*, 4> kFilters = {"bilinear", "16-tap Catmull-Rom", "9-tap Catmull-Rom",
-                                                     "5-tap Catmull-Rom"};
-    const std::string filter = kFilters[std::size_t(parameters_.recursive.history_filter)];
+    constexpr std::array<const char*, 7> kFilters = {
+        "bilinear", "16-tap Catmull-Rom", "9-tap Catmull-Rom", "5-tap Catmull-Rom",
+        "cubic",    "cubic B-spline",     "quintic B-spline"};
+    std::string filter = kFilters[std::size_t(parameters_.recursive.history_filter)];
+    if (parameters_.recursive.history_filter == HistoryFilter::cubic)
+      filter += " with B " + short_number(parameters_.recursive.cubic_b) + " and C " +
+                short_number(parameters_.recursive.cubic_c);
     if (info_.frames.size() < 2) {
       add("history", false, "there is one frame only, so nothing came before");
       add("window test", false, "no history");
@@ -124,9 +145,14 @@ class Planner {
   }
 
   void sample_weights() {
-    plan_.use_jitter = parameters_.recursive.sample_filter != SampleFilter::none;
-    add("sample weights", plan_.use_jitter,
-        plan_.use_jitter ? "the jitter is known: samples count by their distance from the pixel center"
+    const bool weigh = parameters_.recursive.sample_filter != SampleFilter::none;
+    const bool unjitter = parameters_.recursive.unjitter != Unjitter::none;
+    plan_.use_jitter = weigh || unjitter;
+    add("unjitter", unjitter,
+        unjitter ? "the jitter is known: the present is read at the pixel centers, between its samples"
+                 : "not asked for; samples stand for their pixels");
+    add("sample weights", weigh,
+        weigh ? "the jitter is known: samples count by their distance from the pixel center"
         : info_.frames_with_jitter > 0
             ? "the jitter is known, but no sample filter is asked for; --sample-filter NAME turns it on"
             : "the jitter is not known");
@@ -162,6 +188,12 @@ class Planner {
         r.alpha_rule == AlphaRule::fixed
             ? "the present weighs " + short_number(r.alpha)
             : "the present weighs 1/n for n frames seen, at least " + short_number(r.alpha));
+  }
+
+  void finish() {
+    const double strength = parameters_.finish.sharpen;
+    add("sharpen", strength > 0,
+        strength > 0 ? "strength " + short_number(strength) + ", of what is written only" : "not asked for");
   }
 
   void outputs() {
@@ -224,6 +256,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   planner.sample_weights();
   planner.rectify();
   planner.blend();
+  planner.finish();
   planner.outputs();
   planner.channels();
   std::size_t present = 0;

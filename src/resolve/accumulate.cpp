@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "resolve/accumulate_row.h"
+#include "resolve/bspline.h"
 #include "resolve/sample_weights.h"
 
 namespace varve {
@@ -53,13 +54,20 @@ struct RowKernel {
   decltype(&baseline::blend_present) blend_present;
 };
 
-RowKernel kernel_for(Isa isa) {
+/// Degree of an interpolating B-spline, 0 for other filters.
+int spline_degree(HistoryFilter filter) {
+  return filter == HistoryFilter::bspline3 ? 3 : filter == HistoryFilter::bspline5 ? 5 : 0;
+}
+
+RowKernel kernel_for(Isa isa, HistoryFilter filter) {
+  RowKernel kernel{baseline::fetch_history, baseline::rectify_history, baseline::blend_present};
 #ifdef VARVE_HAVE_AVX2
   if (isa != Isa::baseline && __builtin_cpu_supports("avx2"))
-    return {avx2::fetch_history, avx2::rectify_history, avx2::blend_present};
+    kernel = {avx2::fetch_history, avx2::rectify_history, avx2::blend_present};
 #endif
   (void)isa;
-  return {baseline::fetch_history, baseline::rectify_history, baseline::blend_present};
+  if (filter == HistoryFilter::cubic || spline_degree(filter) > 0) kernel.fetch_history = spline::fetch_history;
+  return kernel;
 }
 
 /// Row buffers of one worker.
@@ -94,11 +102,14 @@ struct PresentView {
 };
 
 PresentView view_present(AccumulateView& v, const Present& present, const RectifyParameters& rectify,
-                         SampleFilter sample_filter, std::optional<glm::dvec2> jitter, Workers& workers) {
+                         SampleFilter sample_filter, Unjitter unjitter, std::optional<glm::dvec2> jitter,
+                         Workers& workers) {
   const Window& w = present.color.window();
   PresentView made;
   if (sample_filter != SampleFilter::none && jitter)
     made.weighed = weigh_samples(present, sample_filter, *jitter, workers);
+  else if (unjitter == Unjitter::bilinear && jitter)
+    made.weighed.color = unjitter_bilinear(present, *jitter, workers);
   if (rectify.box != Box::none && rectify.space == BoxSpace::ycocg)
     made.rotated = rotate_to_ycocg(present.color, workers);
   if (present.motion.empty()) made.at_rest = Plane<glm::vec2>(w, 0, glm::vec2(0.0f));
@@ -117,8 +128,10 @@ PresentView view_present(AccumulateView& v, const Present& present, const Rectif
   return made;
 }
 
-void view_history(AccumulateView& v, const Present& present, const History& previous, Disocclusion disocclusion) {
-  if (previous.empty()) return;
+/// Gives back the plane of B-spline coefficients that the view points to, where the filter needs one.
+Plane<glm::vec4> view_history(AccumulateView& v, const Present& present, const History& previous,
+                              const RecursiveParameters& recursive, Workers& workers) {
+  if (previous.empty()) return {};
   const Window &w = present.color.window(), &h = previous.color.window();
   v.history_width = h.width();
   v.history_height = h.height();
@@ -128,10 +141,15 @@ void view_history(AccumulateView& v, const Present& present, const History& prev
   v.history_total = read_rows(previous.total);
   v.history_spread = read_rows(previous.spread);
   v.history_rows_valid = previous.rows_valid.data();
-  if (disocclusion == Disocclusion::depth && !present.depth.empty() && !previous.depth.empty()) {
+  if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty() && !previous.depth.empty()) {
     v.depth = read_rows(present.depth);
     v.history_depth = read_rows(previous.depth);
   }
+  const int degree = spline_degree(recursive.history_filter);
+  if (degree == 0) return {};
+  Plane<glm::vec4> coefficients = bspline_coefficients(previous.color, degree, workers);
+  v.history_spline = read_rows(coefficients);
+  return coefficients;
 }
 
 void view_output(AccumulateView& v, Accumulated& out, const DiagnosticsWanted& wanted) {
@@ -150,6 +168,8 @@ void view_output(AccumulateView& v, Accumulated& out, const DiagnosticsWanted& w
 
 void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const RectifyParameters& rectify) {
   v.filter = recursive.history_filter;
+  v.cubic_b = recursive.cubic_b;
+  v.cubic_c = recursive.cubic_c;
   v.dering = recursive.dering;
   v.alpha_rule = recursive.alpha_rule;
   v.alpha = recursive.alpha;
@@ -163,7 +183,7 @@ void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const
 }
 
 AccumulateCounts run_rows(const AccumulateView& v, Isa isa, Workers& workers) {
-  const RowKernel kernel = kernel_for(isa);
+  const RowKernel kernel = kernel_for(isa, v.filter);
   std::vector<Scratch> scratch;
   for (int i = 0; i < workers.count(); ++i) scratch.emplace_back(v.width);
   std::vector<RowCounts> counts(std::size_t(workers.count()));
@@ -194,8 +214,9 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
   Accumulated out{make_history(present.color.window()), {}, {}};
   if (present.color.window().empty()) return out;
   AccumulateView v{};
-  const PresentView made = view_present(v, present, rectify, recursive.sample_filter, jitter, workers);
-  view_history(v, present, previous, recursive.disocclusion);
+  const PresentView made =
+      view_present(v, present, rectify, recursive.sample_filter, recursive.unjitter, jitter, workers);
+  const Plane<glm::vec4> spline = view_history(v, present, previous, recursive, workers);
   view_output(v, out, wanted);
   view_choices(v, recursive, rectify);
   v.restart_bit = restart_bit;
@@ -210,8 +231,8 @@ History predict(const Present& present, const History& previous, const Recursive
   Accumulated out{make_history(present.color.window()), {}, {}};
   if (present.color.window().empty()) return std::move(out.history);
   AccumulateView v{};
-  const PresentView made = view_present(v, present, rectify, SampleFilter::none, {}, workers);
-  view_history(v, present, previous, recursive.disocclusion);
+  const PresentView made = view_present(v, present, rectify, SampleFilter::none, Unjitter::none, {}, workers);
+  const Plane<glm::vec4> spline = view_history(v, present, previous, recursive, workers);
   view_output(v, out, {});
   view_choices(v, recursive, rectify);
   v.anchor = BoxAnchor::mean;

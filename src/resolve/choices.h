@@ -4,8 +4,9 @@
 
 namespace varve {
 
-/// How history is read between pixels. All are non-expansive (math: |R(f)| <= 1), so recursion is stable.
-enum class HistoryFilter { bilinear, catmull_rom, catmull_rom9, catmull_rom5 };
+/// How history is read between pixels. All but some cubics are non-expansive (|R(f)| <= 1, see resampling_kernel.h), so
+/// that reading it again and again is stable; the plan refuses the cubics that are not.
+enum class HistoryFilter { bilinear, catmull_rom, catmull_rom9, catmull_rom5, cubic, bspline3, bspline5 };
 
 /// What the neighborhood of the present allows history to be.
 enum class Box { none, minmax, variance, variance_minmax };
@@ -18,6 +19,9 @@ enum class AlphaRule { fixed, mean };
 
 /// What makes a pixel start over, besides leaving the data window.
 enum class Disocclusion { window, depth };
+
+/// Whether the present is brought to the pixel centers by a fetch at minus the jitter (Pedersen 2016).
+enum class Unjitter { none, bilinear };
 
 /// Reconstruction of the present from true sample positions.
 enum class SampleFilter { none, tent, gaussian, blackman_harris, mitchell };

@@ -50,7 +50,7 @@ bool several_layers(const std::vector<ResolvedSubject>& subjects) {
 /// The resolved color of a subject, converted to the file's space when asked.
 Plane<glm::vec4> color_to_write(const ResolvedSubject& resolved, const ColorConversion* conversion, Workers& workers) {
   if (!conversion) return {};
-  Plane<glm::vec4> color = resolved.accumulated->history.color.clone();
+  Plane<glm::vec4> color = resolved.color().clone();
   conversion->apply(color, workers);
   // A transform may leave the numbers (a log of a negative); outputs hold finite numbers only.
   const Window& w = color.window();
@@ -69,7 +69,7 @@ Plane<glm::vec4> color_to_write(const ResolvedSubject& resolved, const ColorConv
 void add_color(FileOutput& out, OutputPart& to, const Part& part, const ResolvedSubject& resolved,
                const ColorConversion* conversion, Workers& workers) {
   const Plane<glm::vec4> converted = color_to_write(resolved, conversion, workers);
-  const Plane<glm::vec4>& color = converted.empty() ? resolved.accumulated->history.color : converted;
+  const Plane<glm::vec4>& color = converted.empty() ? resolved.color() : converted;
   const Window& window = color.window();
   std::array<RawPlane*, 4> planes{};
   for (std::size_t k = 0; k < 4; ++k)
