@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "diagnose/aov.h"
 #include "diagnose/metric.h"
+#include "exr/jitter_convention.h"
 #include "help.h"
 #include "plan/preset.h"
 #include "synth/scenes.h"
@@ -106,6 +107,34 @@ Topic scenes_topic() {
   return topic;
 }
 
+Topic patterns_topic() {
+  Topic topic{"patterns",
+              "JITTER PATTERNS",
+              "Sample positions for `varve jitter` and for --jitter PATTERN:N. Patterns without a length of their own "
+              "take N points, 16 without it.",
+              {}};
+  for (const JitterPattern& row : jitter_patterns())
+    topic.rows.emplace_back(row.name, std::string(row.meaning) + ". " +
+                                          (row.length == 0   ? "Up to " + std::to_string(row.most) + " points"
+                                           : row.length == 1 ? std::string("1 point")
+                                                             : std::to_string(row.length) + " points") +
+                                          ". Source: " + std::string(row.source) + ".");
+  return topic;
+}
+
+Topic jitter_conventions_topic() {
+  Topic topic{
+      "jitter-conventions",
+      "JITTER CONVENTIONS",
+      "What a renderer must be told so that it samples at jx, jy, for `varve jitter --convention`. Evidence tells "
+      "how far a row can be trusted; `varve probe` cannot see a wrong one.",
+      {}};
+  for (const JitterConvention& row : jitter_conventions())
+    topic.rows.emplace_back(row.name, std::string(row.meaning) + " Columns: " + std::string(row.x) + ", " +
+                                          std::string(row.y) + ". Evidence: " + std::string(row.evidence) + ".");
+  return topic;
+}
+
 Topic exit_topic() {
   Topic topic{"exit-codes", "EXIT STATUS", "", {}};
   for (const ExitMeaning& row : kExitMeanings)
@@ -116,8 +145,8 @@ Topic exit_topic() {
 }  // namespace
 
 std::vector<Topic> topics() {
-  return {presets_topic(), aovs_topic(),   rejection_topic(), conventions_topic(),
-          metrics_topic(), scenes_topic(), exit_topic()};
+  return {presets_topic(), aovs_topic(),     rejection_topic(),          conventions_topic(), metrics_topic(),
+          scenes_topic(),  patterns_topic(), jitter_conventions_topic(), exit_topic()};
 }
 
 std::string topic_names() {
