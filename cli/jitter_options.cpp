@@ -52,6 +52,9 @@ void add_jitter_options(std::vector<Option>& rows) {
                   "Number of the first frame. Frame 1 always has the first point, as with `varve resolve --jitter "
                   "PATTERN:N`, and the points follow in turns.",
                   number([](auto& s) -> auto& { return s.jitter.first; }, {-1e9, 1e9})});
+  add(positions, {"amplitude", 0, "FACTOR", 0, kBasic, "",
+                  "Multiplies all positions. 1 fills the pixel; less flickers less and resolves less; 0 is no jitter.",
+                  number([](auto& s) -> auto& { return s.jitter.amplitude; }, {0, 1})});
   add(positions, {"centered", 0, "", 0, kBasic, "",
                   "Subtract the mean of one round, so that the picture is not shifted; the comment lines tell it.",
                   flag([](auto& s) -> auto& { return s.jitter.centered; })});

@@ -35,6 +35,7 @@ JitterList list_jitter(const JitterListJob& job) {
     throw Failure(ExitCode::usage, list.name + " has up to " + std::to_string(named->pattern->most) +
                                        " points; for more frames give it a length, such as " + list.name + ":64");
   list.points = named->pattern->points(request);
+  for (Jitter& p : list.points) p.x *= job.amplitude, p.y *= job.amplitude;
   list.centroid = centroid_of(list.points);
   if (job.centered)
     for (Jitter& p : list.points) p.x -= list.centroid.x, p.y -= list.centroid.y;
@@ -50,6 +51,7 @@ JitterList list_jitter(const JitterListJob& job) {
 std::string jitter_csv(const JitterListJob& job, const JitterList& list) {
   const JitterConvention& convention = *list.convention;
   std::string text = "# pattern " + list.name + ", " + points_text(list) + ", frame 1 is the first\n";
+  if (job.amplitude != 1) text += "# amplitude " + json_number(job.amplitude) + "\n";
   text += "# convention " + std::string(convention.name);
   text += convention.needs_size
               ? " for " + std::to_string(job.width) + "x" + std::to_string(job.height) + " pixels; not read by varve\n"
@@ -64,8 +66,9 @@ std::string jitter_csv(const JitterListJob& job, const JitterList& list) {
 
 std::string jitter_json(const JitterListJob& job, const JitterList& list) {
   std::string text = "{\"pattern\":" + json_quote(list.name) + ",\"length\":" + std::to_string(list.points.size()) +
-                     ",\"convention\":" + json_quote(list.convention->name) + ",\"centroid\":[" +
-                     pair_text(list.centroid) + "],\"centered\":" + (job.centered ? "true" : "false") + ",\"frames\":[";
+                     ",\"convention\":" + json_quote(list.convention->name) +
+                     ",\"amplitude\":" + json_number(job.amplitude) + ",\"centroid\":[" + pair_text(list.centroid) +
+                     "],\"centered\":" + (job.centered ? "true" : "false") + ",\"frames\":[";
   for (int i = 0; i < job.count; ++i) {
     const Jitter p = converted(job, list, pattern_point(list.points, job.first + i));
     text += std::string(i > 0 ? "," : "") + "\n{\"frame\":" + std::to_string(job.first + i) + "," +

@@ -14,6 +14,7 @@ struct JitterListJob {
   int first = 1;          ///< number of the first frame
   int seed = 0;           ///< of patterns made by chance, 0 and up
   double direction = 0;   ///< see PatternRequest
+  double amplitude = 1;   ///< factor on all points: 1 fills the pixel, 0 leaves its center
   bool centered = false;  ///< subtract the centroid
   std::string_view convention = "pixels";
   int width = 0, height = 0;  ///< of the picture, for the conventions that need it

@@ -14,6 +14,19 @@ constexpr Preset kPresets[] = {
      "dilation=longest alpha=0.1 alpha-rule=mean history-filter=catmull-rom dering=on disocclusion=window "
      "sample-filter=none "
      "box=variance gamma=1 window=3 rule=clip anchor=present space=rgb"},
+    {"lopez", "Lopez, The Holy Trail; defaults of the public code MSAAFilter",
+     "A tenth of the present, the vector of the nearest surface, sharp history, a wide variance box around the mean.",
+     "dilation=nearest alpha=0.1 alpha-rule=fixed history-filter=catmull-rom dering=on disocclusion=window "
+     "sample-filter=none "
+     "box=variance gamma=1.5 window=3 rule=clip anchor=mean space=rgb"},
+    {"crytek2", "Sousa 2011 (Crysis 2); Wronski 2014",
+     "Two jittered frames in equal parts, neighbors have no say; render with the jitter pattern two-frame.",
+     "dilation=none alpha=0.5 alpha-rule=fixed history-filter=bilinear disocclusion=window sample-filter=none "
+     "box=none"},
+    {"inside", "Pedersen 2016 (INSIDE); its public code",
+     "Present fetched at minus the jitter, history clipped to the center of the minmax box; needs the jitter.",
+     "dilation=nearest alpha=0.05 alpha-rule=fixed history-filter=bilinear disocclusion=window unjitter=bilinear "
+     "sample-filter=none box=minmax window=3 rule=clip anchor=mean space=rgb"},
 };
 
 }  // namespace
