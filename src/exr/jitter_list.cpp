@@ -51,6 +51,8 @@ JitterList list_jitter(const JitterListJob& job) {
 std::string jitter_csv(const JitterListJob& job, const JitterList& list) {
   const JitterConvention& convention = *list.convention;
   std::string text = "# pattern " + list.name + ", " + points_text(list) + ", frame 1 is the first\n";
+  if (job.seed != 0) text += "# seed " + std::to_string(job.seed) + "\n";
+  if (job.direction != 0) text += "# direction " + json_number(job.direction) + " degrees\n";
   if (job.amplitude != 1) text += "# amplitude " + json_number(job.amplitude) + "\n";
   text += "# convention " + std::string(convention.name);
   text += convention.needs_size
@@ -66,8 +68,9 @@ std::string jitter_csv(const JitterListJob& job, const JitterList& list) {
 
 std::string jitter_json(const JitterListJob& job, const JitterList& list) {
   std::string text = "{\"pattern\":" + json_quote(list.name) + ",\"length\":" + std::to_string(list.points.size()) +
-                     ",\"convention\":" + json_quote(list.convention->name) +
-                     ",\"amplitude\":" + json_number(job.amplitude) + ",\"centroid\":[" + pair_text(list.centroid) +
+                     ",\"convention\":" + json_quote(list.convention->name) + ",\"seed\":" + std::to_string(job.seed) +
+                     ",\"direction\":" + json_number(job.direction) + ",\"amplitude\":" + json_number(job.amplitude) +
+                     ",\"centroid\":[" + pair_text(list.centroid) +
                      "],\"centered\":" + (job.centered ? "true" : "false") + ",\"frames\":[";
   for (int i = 0; i < job.count; ++i) {
     const Jitter p = converted(job, list, pattern_point(list.points, job.first + i));

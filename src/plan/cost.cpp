@@ -22,8 +22,8 @@ constexpr CodecCost kNone{0.2, 0.9}, kLight{1.5, 3}, kZip{1.9, 6}, kPiz{5, 11}, 
 // Nanoseconds per pixel and pass, one thread with AVX2, as tests/bench/passes_bench prints them; inversion of forward
 // vectors, depth test and diagnostics are set by their traffic and not measured yet.
 constexpr double kConvert = 1.5, kSanitize = 1.6, kMotion = 1.1, kInvert = 12, kDilate = 8.5, kHistory = 22,
-                 kDepthTest = 1, kSampleWeights = 20, kBox = 28, kBlend = 8, kDiagnostic = 0.5, kCubic = 60,
-                 kBspline3 = 110, kBspline5 = 190, kUnjitter = 20, kSharpen = 60;
+                 kDepthTest = 1, kSampleWeights = 20, kBox = 28, kBlend = 8, kDiagnostic = 0.5, kCubic = 45,
+                 kBspline3 = 100, kBspline5 = 125, kUnjitter = 12, kSharpen = 33;
 
 /// Of reading history.
 double cost_of(HistoryFilter filter) {

@@ -22,6 +22,7 @@ Inverse inverse_of(int degree) {
 
 /// Position in a line of `n` that goes on mirrored about its ends.
 std::ptrdiff_t mirrored(std::ptrdiff_t i, std::ptrdiff_t n) {
+  if (i >= 0 && i < n) return i;
   if (n == 1) return 0;
   const std::ptrdiff_t period = 2 * n - 2;
   i = ((i % period) + period) % period;

@@ -20,8 +20,9 @@ double quintic_bspline(double x) {
   const double t = std::abs(x), t2 = t * t, t3 = t2 * t, t4 = t2 * t2, t5 = t4 * t;
   if (t < 1) return (66 - 60 * t2 + 30 * t4 - 10 * t5) / 120;
   if (t < 2) return (51 + 75 * t - 210 * t2 + 150 * t3 - 45 * t4 + 5 * t5) / 120;
-  if (t < 3) return std::pow(3 - t, 5) / 120;
-  return 0;
+  if (!(t < 3)) return 0;
+  const double u = 3 - t, u2 = u * u;
+  return u2 * u2 * u / 120;
 }
 
 double sinc(double x) { return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); }

@@ -59,6 +59,27 @@ TEST(Filters, ThoseThatAmplifyAreRefusedAndTheOthersRun) {
   EXPECT_EQ(resolve({"--unjitter", "bilinear"}).code, 0);
 }
 
+TEST(Presets, MeasureOfAllLeavesOutWhatTheSequenceCannotDo) {
+  Folder folder;
+  ASSERT_EQ(run_varve({"synth", "fence", "-o", "in", "-f", "1-3", "--size", "48x32", "-q"}, folder.path()).code, 0);
+  const Outcome all = run_varve({"measure", "in/fence.####.exr", "--jitter", "none", "--repeats", "1"}, folder.path());
+  EXPECT_EQ(all.code, 0) << all.err;
+  EXPECT_NE(all.err.find("warning: inside is left out"), std::string::npos) << all.err;
+  EXPECT_NE(all.out.find("salvi"), std::string::npos);
+  const Outcome named =
+      run_varve({"measure", "in/fence.####.exr", "--jitter", "none", "--repeats", "1", "-p", "inside"}, folder.path());
+  EXPECT_EQ(named.code, 4) << named.err;
+}
+
+TEST(Presets, AllRun) {
+  Folder folder;
+  ASSERT_EQ(run_varve({"synth", "fence", "-o", "in", "-f", "1-3", "--size", "48x32", "-q"}, folder.path()).code, 0);
+  for (const std::string name : {"salvi", "lopez", "crytek2", "inside"})
+    EXPECT_EQ(
+        run_varve({"resolve", "in/fence.####.exr", "-o", name + ".####.exr", "-p", name, "-q"}, folder.path()).code, 0)
+        << name;
+}
+
 TEST(Sharpen, IsNeverFedBack) {
   // The last frame resolved with sharpening is the sharpened form of the plain one: a second frame built on a sharpened
   // first one would differ from a run whose first frame was not written at all.

@@ -185,6 +185,19 @@ TEST(JitterList, IsReadBackToTheLastBitAndIsWhatThePatternGives) {
     }
 }
 
+TEST(JitterList, AmplitudeShrinksThePatternAboutTheCenter) {
+  JitterListJob job;
+  job.pattern = "halton23";
+  const JitterList whole = list_jitter(job);
+  job.amplitude = 0.5;
+  const JitterList half = list_jitter(job);
+  for (std::size_t i = 0; i < whole.points.size(); ++i) EXPECT_EQ(half.points[i].x, whole.points[i].x / 2);
+  EXPECT_EQ(half.centroid.y, whole.centroid.y / 2);
+  EXPECT_NE(jitter_csv(job, half).find("# amplitude 0.5\n"), std::string::npos);
+  job.amplitude = 0;
+  for (const Jitter& p : list_jitter(job).points) EXPECT_TRUE(p.x == 0 && p.y == 0);
+}
+
 TEST(JitterList, JsonSaysTheSame) {
   JitterListJob job;
   job.pattern = "halton23";

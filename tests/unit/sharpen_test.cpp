@@ -132,6 +132,30 @@ TEST(Unjitter, AgreesWithItsTwinAndKeepsAConstant) {
     for (int x = kOdd.x0; x < kOdd.x1; ++x) ASSERT_EQ(out.at(x, y), value);
 }
 
+TEST(Unjitter, KnowsNoScaleNoThreadAndNoExtreme) {
+  Workers one(1), many(5);
+  test::NoiseOptions noise;
+  noise.bad_share = 0.05;
+  Present p = noise_present(kOdd, noise, one);
+  const glm::dvec2 jitter(0.31, -0.22);
+  const Plane<glm::vec4> plain = unjitter_bilinear(p, jitter, one);
+  EXPECT_TRUE(same_bits(plain, unjitter_bilinear(p, jitter, many)));
+  for (const float scale : {0x1p40f, 0x1p-80f}) {
+    Present scaled = noise_present(kOdd, noise, one);
+    for (int y = kOdd.y0; y < kOdd.y1; ++y)
+      for (int x = kOdd.x0; x < kOdd.x1; ++x) scaled.color.at(x, y) = p.color.at(x, y) * scale;
+    const Plane<glm::vec4> out = unjitter_bilinear(scaled, jitter, one);
+    for (int y = kOdd.y0; y < kOdd.y1; ++y)
+      for (int x = kOdd.x0; x < kOdd.x1; ++x) ASSERT_EQ(out.at(x, y), plain.at(x, y) * scale);
+  }
+  const float values[] = {FLT_MAX, -FLT_MAX, 1e30f, 65504.0f, 1e-38f, 1e-45f, -0.0f, 0.0f};
+  for (int y = kOdd.y0; y < kOdd.y1; ++y)
+    for (int x = kOdd.x0; x < kOdd.x1; ++x) p.color.at(x, y) = glm::vec4(values[(x * 7 + y * 5 + 100) % 8]);
+  const Plane<glm::vec4> extreme = unjitter_bilinear(p, jitter, one);
+  for (int y = kOdd.y0; y < kOdd.y1; ++y)
+    for (int x = kOdd.x0; x < kOdd.x1; ++x) ASSERT_TRUE(std::isfinite(extreme.at(x, y).r)) << x << "," << y;
+}
+
 TEST(Unjitter, PutsARampWhereItBelongs) {
   // A ramp of 1 per pixel seen at p + jitter reads x + jitter; at the centers it is x again.
   Workers workers(1);
