@@ -100,9 +100,10 @@ Points stratified(const PatternRequest& r) {
   std::iota(cells.begin(), cells.end(), 0);
   Points out;
   for (int i = 0; i < r.length; ++i) {
-    std::swap(cells[std::size_t(i)], cells[std::size_t(i + chance.below(int(cells.size()) - i))]);
-    const int cell = cells[std::size_t(i)];
-    const double x = (cell % edge + chance()) / edge, y = (cell / edge + chance()) / edge;
+    const int other = i + chance.below(int(cells.size()) - i);
+    std::swap(cells[std::size_t(i)], cells[std::size_t(other)]);
+    const int column = cells[std::size_t(i)] % edge, row = cells[std::size_t(i)] / edge;
+    const double x = (column + chance()) / edge, y = (row + chance()) / edge;
     out.push_back({x - 0.5, y - 0.5});
   }
   return out;

@@ -98,11 +98,11 @@ Plane<glm::vec4> bspline_coefficients(const Plane<glm::vec4>& color, int degree,
     Lines& line = rows[std::size_t(worker)];
     const glm::vec4* from = color.row(w.y0 + int(y));
     for (int x = 0; x < w.width(); ++x)
-      for (int k = 0; k < 4; ++k) line.value[std::size_t(4 * x + k)] = double(from[x][k]);
+      for (int k = 0; k < 4; ++k) line.at(line.value, x)[k] = double(from[x][k]);
     invert(line, inverse);
     glm::vec4* to = out.row(w.y0 + int(y));
     for (int x = 0; x < w.width(); ++x)
-      for (int k = 0; k < 4; ++k) to[x][k] = held(line.value[std::size_t(4 * x + k)]);
+      for (int k = 0; k < 4; ++k) to[x][k] = held(line.at(line.value, x)[k]);
   });
   constexpr int kStrip = 4;  // pixels: a cache line
   std::vector<Lines> strips(std::size_t(workers.count()), Lines(w.height(), 4 * kStrip));

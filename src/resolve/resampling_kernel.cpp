@@ -53,7 +53,9 @@ LargestGain largest_gain(At kernel_at) {
   };
   for (int i = 0; i <= 32; ++i)
     for (int k = 0; k <= 128; ++k) look(k / 256.0, i / 64.0);
-  for (double step = 1 / 128.0; step > 1e-9; step /= 2) {
+  double step = 1 / 64.0;
+  for (int halving = 0; halving < 24; ++halving) {
+    step /= 2;
     const LargestGain from = best;
     for (const double df : {-step, 0.0, step})
       for (const double dv : {-step, 0.0, step}) look(from.frequency + df, from.fraction + dv);
