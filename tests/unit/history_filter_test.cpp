@@ -282,7 +282,7 @@ TEST(HistoryFilters, WeightsSumToOneAndReproduceARamp) {
 
 /// Standard deviation that noise keeps after many passes through a filter, half a pixel off on both axes each time.
 double deviation_after(const RecursiveParameters& filter, int frames, Workers& workers) {
-  const Window w{0, 0, 64, 64};
+  const Window w{0, 0, 48, 48};
   RecursiveParameters p = filter;
   p.alpha = 0.02;
   p.alpha_rule = AlphaRule::fixed;
@@ -298,8 +298,8 @@ double deviation_after(const RecursiveParameters& filter, int frames, Workers& w
   }
   double sum = 0;
   int count = 0;
-  for (int y = 8; y < 56; ++y)
-    for (int x = 8; x < 56; ++x, ++count) sum += double(h.color.at(x, y).r) * double(h.color.at(x, y).r);
+  for (int y = 8; y < 40; ++y)
+    for (int x = 8; x < 40; ++x, ++count) sum += double(h.color.at(x, y).r) * double(h.color.at(x, y).r);
   return std::sqrt(sum / count);
 }
 
@@ -331,7 +331,7 @@ double expected_deviation(const RecursiveParameters& p) {
 }
 
 TEST(HistoryFilters, NoAcceptedFilterGrowsNoiseInSixHundredFrames) {
-  Workers workers(2);
+  Workers workers(1);
   // Held or not, no history holds more noise than the mean it stands for; not held, it is what the response says.
   const double unblurred = std::sqrt(0.02 / 1.98);
   for (const RecursiveParameters& p : wide_filters()) {
@@ -341,7 +341,7 @@ TEST(HistoryFilters, NoAcceptedFilterGrowsNoiseInSixHundredFrames) {
     EXPECT_LT(deviation, unblurred) << name;
     EXPECT_GT(deviation, 0.5 * expected_deviation(p)) << name;
     if (!p.dering) {
-      EXPECT_NEAR(deviation, expected_deviation(p), 0.08 * expected_deviation(p)) << name;
+      EXPECT_NEAR(deviation, expected_deviation(p), 0.1 * expected_deviation(p)) << name;
     }
   }
 }
