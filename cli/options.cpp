@@ -1,5 +1,6 @@
 // THE table of options. Names, ranges and texts of the parameters come from knobs().
 #include "compare_options.h"
+#include "jitter_options.h"
 #include "measure_options.h"
 #include "option_values.h"
 #include "synth_options.h"
@@ -133,10 +134,11 @@ void add_channel_options(std::vector<Option>& rows) {
       .completes = Completes::files;
   add({"jitter", 0, "SOURCE", kInput, kAdvanced, group,
        "Where in its pixel each frame was sampled. auto reads the header; a CSV file has the columns frame,jx,jy, "
-       "sample "
-       "position minus pixel center in pixels, y down.",
+       "sample position minus pixel center in pixels, y down, as `varve jitter` writes it; patterns are those of "
+       "`varve "
+       "help patterns`, with a seed of 0 and a direction of 0.",
        text(
-           [](auto& s) -> auto& { return s.job.jitter; }, "auto, none, a CSV file or a sequence such as halton23:16")})
+           [](auto& s) -> auto& { return s.job.jitter; }, "auto, none, a CSV file or a pattern such as halton23:16")})
       .completes = Completes::files;
 }
 
@@ -295,6 +297,7 @@ std::vector<Option> option_table() {
   std::vector<Option> rows;
   add_file_options(rows);
   add_synth_options(rows);
+  add_jitter_options(rows);
   add_channel_options(rows);
   add_parameter_options(rows);
   add_motion_options(rows);

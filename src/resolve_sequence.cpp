@@ -276,6 +276,14 @@ std::vector<Resolved> resolve_gather(const Setup& s, const FrameWindow& window, 
   return resolved;
 }
 
+/// What is written where that is not what the history keeps; else empty. What stands in for a pixel is sharpened too.
+Plane<glm::vec4> finish(const Present& present, const History& resolved, const Parameters& parameters,
+                        Workers& workers) {
+  Plane<glm::vec4> shown = fall_back(present, resolved, parameters.fallback, workers);
+  if (!(parameters.finish.sharpen > 0)) return shown;
+  return sharpen(shown.empty() ? resolved.color : shown, resolved.total, parameters.finish.sharpen, workers);
+}
+
 void count(FrameReport& report, const SourceFrame& source, const std::vector<Resolved>& resolved, Workers& workers) {
   report.vectors_bad += source.vectors_bad;
   for (std::size_t k = 0; k < resolved.size(); ++k) {
@@ -395,8 +403,7 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     count(report, source, resolved, workers);
     if (scheduled.write)
       for (std::size_t k = 0; k < resolved.size(); ++k)
-        resolved[k].finished =
-            fall_back(source.presents[k], resolved[k].accumulated.history, job.parameters.fallback, workers);
+        resolved[k].finished = finish(source.presents[k], resolved[k].accumulated.history, job.parameters, workers);
     report.resolve_seconds = clock.lap();
     if (stop()) break;
 

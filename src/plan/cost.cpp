@@ -26,7 +26,7 @@ constexpr CodecCost kNone{0.2, 0.9}, kLight{1.5, 3}, kZip{1.9, 6}, kPiz{5, 11}, 
 // vectors, depth test and diagnostics are set by their traffic and not measured yet.
 constexpr double kConvert = 1.5, kSanitize = 1.6, kMotion = 1.1, kInvert = 12, kDilate = 8.5, kHistory = 22,
                  kDepthTest = 1, kSampleWeights = 20, kBox = 28, kBlend = 8, kDiagnostic = 0.5, kCompanionMove = 250,
-                 kCompanion = 140;
+                 kCompanion = 140, kCubic = 45, kBspline3 = 100, kBspline5 = 125, kUnjitter = 12, kSharpen = 33;
 
 // Two-sided passes each frame twice in each direction.
 constexpr double kTwoSidedPasses = 4;
@@ -65,6 +65,14 @@ std::size_t window_bytes(const RectifyParameters& r, const Window& window) {
   if (r.moments == WindowMoments::pyramid) return window.pixels() * 24 + (cut ? rows * width * sizeof(Extremes) : 0);
   return rows * width * (r.box == Box::minmax && !r.clip_discount ? 0 : sizeof(Moments)) +
          (cut ? rows * width * sizeof(Extremes) : 0);
+}
+
+/// Of reading history.
+double cost_of(HistoryFilter filter) {
+  return filter == HistoryFilter::cubic      ? kCubic
+         : filter == HistoryFilter::bspline3 ? kBspline3
+         : filter == HistoryFilter::bspline5 ? kBspline5
+                                             : kHistory;
 }
 
 CodecCost cost_of(Compression compression) {
@@ -164,6 +172,10 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
   const std::size_t shown = parameters.fallback.any() ? 16 : 0;
   const bool two_sided = parameters.accumulator == Accumulator::two_sided;
   const bool gathers = parameters.accumulator == Accumulator::gather;
+  const HistoryFilter filter = parameters.recursive.history_filter;
+  // Planes of color beside the present: B-spline coefficients, the reconstructed present, the sharpened result.
+  const std::size_t extra = 16 * std::size_t((filter == HistoryFilter::bspline3 || filter == HistoryFilter::bspline5) +
+                                             plan.use_jitter + (parameters.finish.sharpen > 0));
   std::size_t histories = 0, at_work = 0;
   for (const Subject& subject : info.first.subjects) {
     const std::size_t pixels = pixels_of(info, subject);
@@ -176,10 +188,10 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
     if (two_sided)  // the past of the next block too, three frames' vectors
       histories += pixels * (24 + 3 * 20 + waiting_bytes_per_pixel(parameters, output));
     const bool in_space = parameters.rectify.box != Box::none && parameters.rectify.space != BoxSpace::rgb;
-    at_work =
-        std::max(at_work, pixels * (16 + 16 * companions + (plan.use_motion ? 8 : 0) + (plan.use_depth ? 4 : 0) +
-                                    (in_space ? 16 : 0) + diagnostic_bytes_per_pixel(output, parameters.accumulator)) +
-                              window_bytes(parameters.rectify, window_of(info, subject)));
+    at_work = std::max(at_work,
+                       pixels * (16 + extra + 16 * companions + (plan.use_motion ? 8 : 0) + (plan.use_depth ? 4 : 0) +
+                                 (in_space ? 16 : 0) + diagnostic_bytes_per_pixel(output, parameters.accumulator)) +
+                           window_bytes(parameters.rectify, window_of(info, subject)));
   }
   return kBaseBytes + raw + histories + at_work;
 }
@@ -208,14 +220,17 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
   const RecursiveParameters& recursive = parameters.recursive;
   double per_pixel = kConvert + kSanitize + double(diagnostic_bytes) * (kDiagnostic + kZip.encode);
   if (parameters.accumulator == Accumulator::gather) {
+    if (parameters.finish.sharpen > 0) per_pixel += kSharpen;
     per_pixel += gather_nanoseconds(parameters);
     for (const Subject& subject : info.first.subjects) nanoseconds += double(pixels_of(info, subject)) * per_pixel;
     return nanoseconds * 1e-9 / std::max(1, threads);
   }
-  per_pixel += kBlend + kHistory;
+  per_pixel += kBlend + cost_of(recursive.history_filter);
   if (plan.use_motion && parameters.motion.dilation != Dilation::none) per_pixel += kDilate;
   if (recursive.disocclusion == Disocclusion::depth) per_pixel += kDepthTest;
   if (recursive.sample_filter != SampleFilter::none) per_pixel += kSampleWeights;
+  if (recursive.unjitter != Unjitter::none) per_pixel += kUnjitter;
+  if (parameters.finish.sharpen > 0) per_pixel += kSharpen;
   per_pixel += box_cost(parameters.rectify);
   const double passes = two_sided ? kTwoSidedPasses : 1;
   for (const Subject& subject : info.first.subjects) {

@@ -2,6 +2,9 @@
 
 #include <array>
 
+#include "base/error.h"
+#include "plan/expansive.h"
+
 namespace varve {
 namespace {
 
@@ -29,6 +32,13 @@ constexpr Word<HistoryFilter> kHistoryFilters[] = {
     {"catmull-rom", HistoryFilter::catmull_rom, "16 taps; sharp"},
     {"catmull-rom9", HistoryFilter::catmull_rom9, "9 bilinear taps with the result of 16"},
     {"catmull-rom5", HistoryFilter::catmull_rom5, "5 bilinear taps without the corners, renormalized"},
+    {"cubic", HistoryFilter::cubic, "16 taps of Mitchell and Netravali with --cubic-b and --cubic-c"},
+    {"bspline3", HistoryFilter::bspline3, "cubic B-spline through every pixel; sharper than Catmull-Rom, slower"},
+    {"bspline5", HistoryFilter::bspline5, "quintic B-spline through every pixel; sharpest, slowest"},
+};
+constexpr Word<Unjitter> kUnjitters[] = {
+    {"none", Unjitter::none, "the sample stands for its pixel, wherever it lies"},
+    {"bilinear", Unjitter::bilinear, "read between the samples; no wobble, softer"},
 };
 constexpr Word<bool> kSwitches[] = {
     {"on", true, "no overshoot beside bright edges"},
@@ -120,6 +130,18 @@ Value<Parameters> word(At at, const Word<T> (&words)[N]) {
   return word_value<Parameters>(at, std::span<const Word<T>>(words));
 }
 
+/// The words of history filters, and those that are filters but cannot be used, which say why.
+Value<Parameters> history_filter() {
+  Value<Parameters> value = word(
+      [](auto& p) -> auto& { return p.recursive.history_filter; }, kHistoryFilters);
+  value.read = [read = value.read](Parameters& parameters, std::string_view text) {
+    if (text == "lanczos3" || text == "lanczos4")
+      throw Failure(ExitCode::usage, expansive_filter_text(text, lanczos_gain(text == "lanczos3" ? 3 : 4)));
+    return read(parameters, text);
+  };
+  return value;
+}
+
 template <class At>
 Value<Parameters> number(At at, Range range) {
   return number_value<Parameters>(at, range);
@@ -142,7 +164,8 @@ std::vector<Knob> knobs() {
   constexpr auto basic = Tier::basic, advanced = Tier::advanced, expert = Tier::expert;
   constexpr std::string_view motion = "Motion and depth", history = "History", rectify = "Rectification",
                              around = "Gather (--accumulator gather)",
-                             sides = "Past and future (--accumulator two-sided)", reject = "Rejection";
+                             sides = "Past and future (--accumulator two-sided)", reject = "Rejection",
+                             finish = "Finishing";
   return {
       {"dilation", "WORD", motion, advanced, "Whose vector a pixel follows.",
        word(
@@ -164,11 +187,19 @@ std::vector<Knob> knobs() {
       {"alpha-rule", "WORD", history, advanced, "How the weight of the present goes with the number of frames seen.",
        word(
            [](auto& p) -> auto& { return p.recursive.alpha_rule; }, kAlphaRules)},
-      {"history-filter", "WORD", history, advanced, "Filter that reads history between pixels.",
-       word(
-           [](auto& p) -> auto& { return p.recursive.history_filter; }, kHistoryFilters)},
+      {"history-filter", "WORD", history, advanced,
+       "Filter that reads history between pixels. History is read again every frame, so filters that amplify any wave "
+       "(lanczos3, lanczos4, sharp cubics) are refused.",
+       history_filter()},
+      {"cubic-b", "B", history, expert,
+       "B of --history-filter cubic. 0 meets the pixels; 1 is the cubic B-spline, which also blurs what stands still.",
+       number([](auto& p) -> auto& { return p.recursive.cubic_b; }, {0, 1})},
+      {"cubic-c", "C", history, expert,
+       "C of --history-filter cubic. 0 is softest, 0.5 with a B of 0 is Catmull-Rom; more is sharper and refused where "
+       "it amplifies.",
+       number([](auto& p) -> auto& { return p.recursive.cubic_c; }, {0, 1})},
       {"dering", "WORD", history, expert,
-       "Whether what the Catmull-Rom filters read is held between the four nearest pixels.",
+       "Whether what a filter with negative weights reads is held between the nearest pixels.",
        word(
            [](auto& p) -> auto& { return p.recursive.dering; }, kSwitches)},
       {"disocclusion", "WORD", history, advanced, "Where history is dropped because the surface was not seen before.",
@@ -182,6 +213,11 @@ std::vector<Knob> knobs() {
        "Weights each sample by its true position in the pixel; needs the jitter of the frames.",
        word(
            [](auto& p) -> auto& { return p.recursive.sample_filter; }, kSampleFilters)},
+
+      {"unjitter", "WORD", history, advanced,
+       "Whether the present is brought to the pixel centers before it is blended in; needs the jitter of the frames.",
+       word(
+           [](auto& p) -> auto& { return p.recursive.unjitter; }, kUnjitters)},
 
       {"look-ahead", "FRAMES", sides, advanced,
        "Frames that are looked at, at least, before and after each one; also the length of the blocks they are worked "
@@ -324,6 +360,11 @@ std::vector<Knob> knobs() {
        "Write pixels whose history is younger than this slightly blurred, less with each frame: calms the first frames "
        "after a cut and what was just uncovered. History does not see it. 0 writes them as they are.",
        number([](auto& p) -> auto& { return p.fallback.young_frames; }, {0, 1000})},
+
+      {"sharpen", "STRENGTH", finish, advanced,
+       "Sharpens what is written, never the history: 0 not at all, 1 most. Flat areas gain most, edges least, and no "
+       "color leaves the range of its 3x3 neighbors.",
+       number([](auto& p) -> auto& { return p.finish.sharpen; }, {0, 1})},
   };
 }
 

@@ -7,6 +7,7 @@
 #include "motion/motion.h"
 #include "resolve/accumulate.h"
 #include "resolve/fallback.h"
+#include "resolve/sharpen.h"
 #include "resolve/two_sided.h"
 
 namespace varve {
@@ -18,6 +19,7 @@ struct Parameters {
   RecursiveParameters recursive;
   RectifyParameters rectify;
   FallbackParameters fallback;
+  FinishParameters finish;
   GatherParameters gather;
   TwoSidedParameters two_sided;
 };

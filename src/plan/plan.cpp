@@ -9,6 +9,7 @@
 #include "diagnose/aov.h"
 #include "plan/cost.h"
 #include "plan/describe_rectify.h"
+#include "plan/expansive.h"
 #include "plan/gather_plan.h"
 #include "plan/two_sided_plan.h"
 
@@ -55,9 +56,36 @@ void check_two_sided(const SequenceInfo& info, const Parameters& parameters) {
                   "--anti-flicker, --reactive and --weighing, or give --accumulator recursive");
 }
 
+// Choices that no sequence can make possible.
+void check_filters(const RecursiveParameters& recursive) {
+  if (recursive.history_filter == HistoryFilter::cubic) {
+    const LargestGain gain = cubic_gain(recursive.cubic_b, recursive.cubic_c);
+    if (is_expansive(gain))
+      throw Failure(ExitCode::usage, expansive_filter_text("cubic with cubic-b " + short_number(recursive.cubic_b) +
+                                                               " and cubic-c " + short_number(recursive.cubic_c),
+                                                           gain));
+  }
+  if (recursive.unjitter != Unjitter::none && recursive.sample_filter != SampleFilter::none)
+    throw Failure(ExitCode::usage,
+                  "--unjitter and --sample-filter both bring the present to the pixel centers; give one of them");
+}
+
+// A B-spline is fetched from coefficients, and those of a channel are not those of the color.
+void check_companions(const SequenceInfo& info, const RecursiveParameters& recursive) {
+  if (recursive.history_filter != HistoryFilter::bspline3 && recursive.history_filter != HistoryFilter::bspline5)
+    return;
+  for (const Subject& subject : info.first.subjects)
+    if (!subject.companions.empty())
+      throw Failure(ExitCode::usage,
+                    "--channels do not go by the weights of a color whose history is read by a B-spline; give "
+                    "--history-filter catmull-rom, or --channel-weights own");
+}
+
 // What was asked for outright and cannot be done. Falling back silently would change the picture without a word.
 void check_possible(const SequenceInfo& info, const Parameters& parameters) {
   if (parameters.accumulator == Accumulator::two_sided) check_two_sided(info, parameters);
+  if (parameters.accumulator != Accumulator::gather) check_filters(parameters.recursive);
+  if (parameters.accumulator == Accumulator::recursive) check_companions(info, parameters.recursive);
   if (parameters.recursive.disocclusion == Disocclusion::depth)
     for (const Subject& subject : info.first.subjects)
       if (!subject.depth)
@@ -70,17 +98,18 @@ void check_possible(const SequenceInfo& info, const Parameters& parameters) {
         conflict(parameters.rectify, parameters.recursive, parameters.accumulator == Accumulator::recursive);
     if (!clash.empty()) throw Failure(ExitCode::usage, clash);
   }
-  if (parameters.recursive.sample_filter == SampleFilter::none || parameters.accumulator == Accumulator::gather ||
+  const bool weigh = parameters.recursive.sample_filter != SampleFilter::none;
+  if ((!weigh && parameters.recursive.unjitter == Unjitter::none) || parameters.accumulator == Accumulator::gather ||
       info.frames_with_jitter == int(info.frames.size()))
     return;
   const std::string known = info.frames_with_jitter == 0
                                 ? "is not known"
                                 : "is known for " + std::to_string(info.frames_with_jitter) + " of " +
                                       std::to_string(info.frames.size()) + " frames only";
-  throw Failure(ExitCode::inconsistent, "weighting by sample positions needs the jitter of every frame, which " +
-                                            known +
-                                            "; give it with --jitter FILE or --jitter halton23:N, or give "
-                                            "--sample-filter none");
+  throw Failure(ExitCode::inconsistent, std::string(weigh ? "weighting by sample positions" : "undoing the jitter") +
+                                            " needs the jitter of every frame, which " + known +
+                                            "; give it with --jitter FILE or --jitter halton23:N, or give " +
+                                            (weigh ? "--sample-filter none" : "--unjitter none"));
 }
 
 // A test that was asked for by name needs its channel in every layer.
@@ -181,9 +210,13 @@ class Planner {
   }
 
   void history() {
-    constexpr std::array<const char*, 4> kFilters = {"bilinear", "16-tap Catmull-Rom", "9-tap Catmull-Rom",
-                                                     "5-tap Catmull-Rom"};
-    const std::string filter = kFilters[std::size_t(parameters_.recursive.history_filter)];
+    constexpr std::array<const char*, 7> kFilters = {
+        "bilinear", "16-tap Catmull-Rom", "9-tap Catmull-Rom", "5-tap Catmull-Rom",
+        "cubic",    "cubic B-spline",     "quintic B-spline"};
+    std::string filter = kFilters[std::size_t(parameters_.recursive.history_filter)];
+    if (parameters_.recursive.history_filter == HistoryFilter::cubic)
+      filter += " with B " + short_number(parameters_.recursive.cubic_b) + " and C " +
+                short_number(parameters_.recursive.cubic_c);
     if (stands_alone()) {
       add("history", false, "there is one frame only, so nothing came before");
       add("window test", false, "no history");
@@ -253,9 +286,14 @@ class Planner {
   }
 
   void sample_weights() {
-    plan_.use_jitter = parameters_.recursive.sample_filter != SampleFilter::none;
-    add("sample weights", plan_.use_jitter,
-        plan_.use_jitter ? "the jitter is known: samples count by their distance from the pixel center"
+    const bool weigh = parameters_.recursive.sample_filter != SampleFilter::none;
+    const bool unjitter = parameters_.recursive.unjitter != Unjitter::none;
+    plan_.use_jitter = weigh || unjitter;
+    add("unjitter", unjitter,
+        unjitter ? "the jitter is known: the present is read at the pixel centers, between its samples"
+                 : "not asked for; samples stand for their pixels");
+    add("sample weights", weigh,
+        weigh ? "the jitter is known: samples count by their distance from the pixel center"
         : info_.frames_with_jitter > 0
             ? "the jitter is known, but no sample filter is asked for; --sample-filter NAME turns it on"
             : "the jitter is not known");
@@ -316,6 +354,12 @@ class Planner {
         !what.empty()                      ? what + "; history is not touched"
         : f.motion_blur != MotionBlur::off ? "no vectors"
                                            : "the resolve is shown as it is");
+  }
+
+  void finish() {
+    const double strength = parameters_.finish.sharpen;
+    add("sharpen", strength > 0,
+        strength > 0 ? "strength " + short_number(strength) + ", of what is written only" : "not asked for");
   }
 
   void outputs() {
@@ -434,6 +478,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   }
   planner.companions();
   planner.fallback();
+  planner.finish();
   planner.outputs();
   planner.channels();
   std::size_t present = 0;

@@ -7,6 +7,7 @@
 #include "resolve/accumulate_companions.h"
 #include "resolve/accumulate_row.h"
 #include "resolve/box_space.h"
+#include "resolve/bspline.h"
 #include "resolve/rectify_shapes.h"
 #include "resolve/row_passes.h"
 #include "resolve/sample_weights.h"
@@ -40,13 +41,20 @@ struct RowKernel {
   decltype(&baseline::blend_present) blend_present;
 };
 
-RowKernel kernel_for(Isa isa) {
+/// Degree of an interpolating B-spline, 0 for other filters.
+int spline_degree(HistoryFilter filter) {
+  return filter == HistoryFilter::bspline3 ? 3 : filter == HistoryFilter::bspline5 ? 5 : 0;
+}
+
+RowKernel kernel_for(Isa isa, HistoryFilter filter) {
+  RowKernel kernel{baseline::fetch_history, baseline::rectify_history, baseline::blend_present};
 #ifdef VARVE_HAVE_AVX2
   if (isa != Isa::baseline && __builtin_cpu_supports("avx2"))
-    return {avx2::fetch_history, avx2::rectify_history, avx2::blend_present};
+    kernel = {avx2::fetch_history, avx2::rectify_history, avx2::blend_present};
 #endif
   (void)isa;
-  return {baseline::fetch_history, baseline::rectify_history, baseline::blend_present};
+  if (filter == HistoryFilter::cubic || spline_degree(filter) > 0) kernel.fetch_history = spline::fetch_history;
+  return kernel;
 }
 
 /// Row buffers of one worker.
@@ -98,11 +106,14 @@ struct PresentView {
 };
 
 PresentView view_present(AccumulateView& v, const Present& present, const RectifyParameters& rectify,
-                         SampleFilter sample_filter, std::optional<glm::dvec2> jitter, Workers& workers) {
+                         SampleFilter sample_filter, Unjitter unjitter, std::optional<glm::dvec2> jitter,
+                         Workers& workers) {
   const Window& w = present.color.window();
   PresentView made;
   if (sample_filter != SampleFilter::none && jitter)
     made.weighed = weigh_samples(present, sample_filter, *jitter, workers);
+  else if (unjitter == Unjitter::bilinear && jitter)
+    made.weighed.color = unjitter_bilinear(present, *jitter, workers);
   if (rectify.box != Box::none) {
     made.space = box_space_map(rectify.space, present, workers);
     made.in_space = plane_in_box_space(made.space, present.color, workers);
@@ -123,10 +134,11 @@ PresentView view_present(AccumulateView& v, const Present& present, const Rectif
   return made;
 }
 
-void view_history(AccumulateView& v, const Present& present, const History& previous,
-                  const RecursiveParameters& recursive) {
+/// Gives back the plane of B-spline coefficients that the view points to, where the filter needs one.
+Plane<glm::vec4> view_history(AccumulateView& v, const Present& present, const History& previous,
+                              const RecursiveParameters& recursive, Workers& workers) {
   const bool depth_test = recursive.disocclusion == Disocclusion::depth && !tests_depth_apart(recursive);
-  if (previous.empty()) return;
+  if (previous.empty()) return {};
   const Window &w = present.color.window(), &h = previous.color.window();
   v.history_width = h.width();
   v.history_height = h.height();
@@ -140,6 +152,11 @@ void view_history(AccumulateView& v, const Present& present, const History& prev
     v.depth = read_rows(present.depth);
     v.history_depth = read_rows(previous.depth);
   }
+  const int degree = spline_degree(recursive.history_filter);
+  if (degree == 0) return {};
+  Plane<glm::vec4> coefficients = bspline_coefficients(previous.color, degree, workers);
+  v.history_spline = read_rows(coefficients);
+  return coefficients;
 }
 
 void view_diagnostics(AccumulateView& v, const Window& w, AccumulateDiagnostics& out, const DiagnosticsWanted& wanted) {
@@ -161,6 +178,8 @@ void view_output(AccumulateView& v, Accumulated& out, const DiagnosticsWanted& w
 
 void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const RectifyParameters& rectify) {
   v.filter = recursive.history_filter;
+  v.cubic_b = recursive.cubic_b;
+  v.cubic_c = recursive.cubic_c;
   v.dering = recursive.dering;
   v.alpha_rule = recursive.alpha_rule;
   v.alpha = recursive.alpha;
@@ -194,7 +213,7 @@ class RowRunner {
       : v_(v),
         steps_(steps),
         shapes_(needs_shapes(steps.shapes.rectify) ? &steps.shapes : nullptr),
-        kernel_(kernel_for(isa)),
+        kernel_(kernel_for(isa, v.filter)),
         workers_(workers),
         room_(std::size_t(workers.count())) {
     for (int i = 0; i < workers.count(); ++i) scratch_.emplace_back(v.width, steps.passes.weighs);
@@ -290,8 +309,9 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
   Accumulated out{make_history(present.color.window()), {}, {}};
   if (present.color.window().empty()) return out;
   AccumulateView v{};
-  const PresentView made = view_present(v, present, rectify, recursive.sample_filter, jitter, workers);
-  view_history(v, present, previous, recursive);
+  const PresentView made =
+      view_present(v, present, rectify, recursive.sample_filter, recursive.unjitter, jitter, workers);
+  const Plane<glm::vec4> spline = view_history(v, present, previous, recursive, workers);
   // Companions are blended by the weight of the color.
   DiagnosticsWanted planes = wanted;
   planes.weight = wanted.weight || !present.companions.empty();
@@ -299,12 +319,14 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
   view_choices(v, recursive, rectify);
   v.restart_bit = restart_bit;
   Reconstruct reconstruct;
-  if (!present.companions.empty() && recursive.sample_filter != SampleFilter::none && jitter)
-    reconstruct = [&](const Plane<glm::vec4>& samples) {
+  const bool weighs = recursive.sample_filter != SampleFilter::none, moves = recursive.unjitter != Unjitter::none;
+  if (!present.companions.empty() && (weighs || moves) && jitter)
+    reconstruct = [&, weighs](const Plane<glm::vec4>& samples) {
       Present like;  // the same samples count
       like.color = samples.clone();
       like.valid = present.valid.clone();
-      return weigh_samples(like, recursive.sample_filter, *jitter, workers).color;
+      return weighs ? weigh_samples(like, recursive.sample_filter, *jitter, workers).color
+                    : unjitter_bilinear(like, *jitter, workers);
     };
   const CompanionPass companions = view_companions(v, present, previous, reconstruct, out.history);
   out.counts = run_rows(v,
@@ -325,8 +347,8 @@ History predict(const Present& present, const History& previous, const Recursive
   Accumulated out{make_history(present.color.window()), {}, {}};
   if (present.color.window().empty()) return std::move(out.history);
   AccumulateView v{};
-  const PresentView made = view_present(v, present, rectify, SampleFilter::none, {}, workers);
-  view_history(v, present, previous, recursive);
+  const PresentView made = view_present(v, present, rectify, SampleFilter::none, Unjitter::none, {}, workers);
+  const Plane<glm::vec4> spline = view_history(v, present, previous, recursive, workers);
   view_output(v, out, {});
   view_choices(v, recursive, rectify);
   v.leave_present_out = true;
@@ -344,8 +366,9 @@ AccumulateCounts visit_history(const Present& present, const History& previous, 
                                Workers& workers, Isa isa) {
   if (present.color.window().empty()) return {};
   AccumulateView v{};
-  const PresentView made = view_present(v, present, rectify, recursive.sample_filter, jitter, workers);
-  view_history(v, present, previous, recursive);
+  const PresentView made =
+      view_present(v, present, rectify, recursive.sample_filter, recursive.unjitter, jitter, workers);
+  const Plane<glm::vec4> spline = view_history(v, present, previous, recursive, workers);
   view_diagnostics(v, present.color.window(), diagnostics, wanted);
   view_choices(v, recursive, rectify);
   v.restart_bit = restart_bit;

@@ -25,9 +25,11 @@ struct RecursiveParameters {
   double alpha = 0.1;  ///< weight of the present in the steady state, (0, 1]
   AlphaRule alpha_rule = AlphaRule::mean;
   HistoryFilter history_filter = HistoryFilter::catmull_rom;
-  bool dering = true;  ///< hold a Catmull-Rom fetch between its four nearest pixels
+  double cubic_b = 0, cubic_c = 0.5;  ///< of HistoryFilter::cubic; see is_expansive(cubic_gain())
+  bool dering = true;                 ///< hold what a filter reads between the pixels that count positively
   Disocclusion disocclusion = Disocclusion::window;
   double depth_tolerance = 0.05;                    ///< relative difference of depth that still is the same surface
+  Unjitter unjitter = Unjitter::none;               ///< fetch the present at pixel centers; not with a sample filter
   SampleFilter sample_filter = SampleFilter::none;  ///< reconstruct the present from true sample positions
   RejectParameters reject;
   WeightParameters weight;
@@ -101,8 +103,9 @@ struct Accumulated {
 enum class Isa { automatic, baseline, avx2 };
 
 /// One frame: fetch the history along the motion, rectify, blend. Works on present.color.window(); the history may have
-/// another window. `jitter` (sample position minus pixel centre) is needed for a sample filter and ignored otherwise.
-/// Reads: window/2 pixels around each pixel of the present (2 with a sample filter), 2 around the previous position.
+/// another window. `jitter` (sample position minus pixel centre) is needed for a sample filter or to undo it, and
+/// ignored otherwise. Reads: window/2 pixels around each pixel of the present (2 with a sample filter), 2 around the
+/// previous position (3 with bspline5; B-spline coefficients fade by a factor of 2.3 and more from pixel to pixel).
 /// Companions of the present are resolved along (resolve/accumulate_companions.h).
 /// `restart_bit` is noted in the reject plane where there is no history at all.
 Accumulated accumulate(const Present& present, const History& previous, const RecursiveParameters& recursive,

@@ -109,6 +109,10 @@ void fetch_history(const AccumulateView& v, int y, const RowScratch& s) {
       return fetch_row<HistoryFilter::catmull_rom9>(v, y, s);
     case HistoryFilter::catmull_rom5:
       return fetch_row<HistoryFilter::catmull_rom5>(v, y, s);
+    case HistoryFilter::cubic:
+    case HistoryFilter::bspline3:
+    case HistoryFilter::bspline5:
+      return;  // fetched by spline::fetch_history
   }
 }
 

@@ -8,8 +8,9 @@ namespace varve {
 /// merged with the present counted once; or every sample of the frames around, carried here and used once.
 enum class Accumulator { recursive, two_sided, gather };
 
-/// How history is read between pixels. All are non-expansive (math: |R(f)| <= 1), so recursion is stable.
-enum class HistoryFilter { bilinear, catmull_rom, catmull_rom9, catmull_rom5 };
+/// How history is read between pixels. All but some cubics are non-expansive (|R(f)| <= 1, see resampling_kernel.h), so
+/// that reading it again and again is stable; the plan refuses the cubics that are not.
+enum class HistoryFilter { bilinear, catmull_rom, catmull_rom9, catmull_rom5, cubic, bspline3, bspline5 };
 
 /// What the neighborhood of the present allows history to be.
 enum class Box { none, minmax, rounded, dynamic4, variance, variance_minmax, kdop7, kdop13, pca, ellipsoid, hull };
@@ -43,6 +44,8 @@ enum class Weighing { none, luminance, logarithm };
 /// What is shown of what moves fast: the resolve, or the present blurred along the pixel's own vector or along the
 /// longest around (Pedersen 2016).
 enum class MotionBlur { off, own, neighbors };
+/// Whether the present is brought to the pixel centers by a fetch at minus the jitter (Pedersen 2016).
+enum class Unjitter { none, bilinear };
 
 /// Reconstruction of the present from true sample positions.
 enum class SampleFilter { none, tent, gaussian, blackman_harris, mitchell };

@@ -30,6 +30,7 @@ struct CompanionTaps {
   int x = 0, y = 0;          ///< the pixel at or below the position
   double weight[4][4] = {};  ///< rows y-1..y+2, columns x-1..x+2; sum 1
   double inner[2][2] = {};   ///< the mean of the four nearest, which holds ringing
+  bool holds_wide = false;   ///< held between all pixels that count positively, not the nearest four
   bool holds = false;        ///< hold is not 0
   glm::dvec3 hold{0.0};      ///< part of the way from the wide filter's value to the inner mean, against ringing
   int nearest_x = 0, nearest_y = 0;  ///< what differences are taken to, so that a constant stays that constant

@@ -1,11 +1,13 @@
 // Which pixels of the history a companion is made from: those of the color.
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include <glm/common.hpp>
 
 #include "resolve/companion_taps.h"
+#include "resolve/resampling_kernel.h"
 
 namespace varve {
 namespace {
@@ -56,11 +58,16 @@ bool test_inner(const AccumulateView& v, const float* depth, double fx, double f
   return all;
 }
 
-void set_wide(HistoryFilter filter, double fx, double fy, CompanionTaps& t) {
+void set_wide(const AccumulateView& v, double fx, double fy, CompanionTaps& t) {
   double wx[4], wy[4];
-  catmull_rom(fx, wx);
-  catmull_rom(fy, wy);
-  const bool cornerless = filter == HistoryFilter::catmull_rom5;
+  if (v.filter == HistoryFilter::cubic) {
+    std::copy_n(cubic_weights(v.cubic_b, v.cubic_c, fx).w, 4, wx);
+    std::copy_n(cubic_weights(v.cubic_b, v.cubic_c, fy).w, 4, wy);
+  } else {
+    catmull_rom(fx, wx);
+    catmull_rom(fy, wy);
+  }
+  const bool cornerless = v.filter == HistoryFilter::catmull_rom5;
   const double left = cornerless ? 1 - (wx[0] + wx[3]) * (wy[0] + wy[3]) : 1;
   for (int j = 0; j < 4; ++j)
     for (int i = 0; i < 4; ++i) {
@@ -68,6 +75,7 @@ void set_wide(HistoryFilter filter, double fx, double fy, CompanionTaps& t) {
       t.weight[j][i] = cornerless && corner ? 0 : wx[i] * wy[j] / left;
     }
   t.wide = true;
+  t.holds_wide = v.filter == HistoryFilter::cubic;
 }
 
 }  // namespace
@@ -89,7 +97,7 @@ CompanionTaps find_taps(const AccumulateView& v, int x, int y, unsigned standing
   if (!plain || !all_passed || v.filter == HistoryFilter::bilinear) return t;
   t.nearest_x = t.x + (fx >= 0.5);
   t.nearest_y = t.y + (fy >= 0.5);
-  set_wide(v.filter, fx, fy, t);
+  set_wide(v, fx, fy, t);
   return t;
 }
 
@@ -125,6 +133,13 @@ glm::dvec4 held_by_nearest4(const CompanionTaps& t, const CompanionRows& plane, 
     low = glm::min(low, c);
     high = glm::max(high, c);
   }
+  for (int j = 0; t.holds_wide && j < 4; ++j)
+    for (int i = 0; i < 4; ++i) {
+      if (!(t.weight[1][i] > 0 && t.weight[j][1] > 0)) continue;  // each axis by itself: two lobes make a plus
+      const glm::dvec4 c = pixel_of(plane.history, t.x + i - 1, t.y + j - 1);
+      low = glm::min(low, c);
+      high = glm::max(high, c);
+    }
   return glm::min(glm::max(value, low), high);
 }
 

@@ -161,8 +161,8 @@ History make_state(const Present& present, const RecursiveParameters& recursive)
 /// Fetches, rectifies, discounts, moves on; `finish` does with each row what else is to be done.
 template <class Finish>
 AccumulateCounts walk_rows(const Present& present, const History& beyond, const RecursiveParameters& recursive,
-                           const RectifyParameters& rectify, const TwoSidedParameters& two_sided,
-                           std::optional<glm::dvec2> jitter, std::uint32_t restart_bit, const DiagnosticsWanted& wanted,
+                           const RectifyParameters& rectify, std::optional<glm::dvec2> jitter,
+                           std::uint32_t restart_bit, const DiagnosticsWanted& wanted,
                            AccumulateDiagnostics& diagnostics, History& state, Workers& workers, Isa isa,
                            Finish finish) {
   const int width = present.color.window().width();
@@ -206,26 +206,24 @@ int look_ahead_frames(const TwoSidedParameters& two_sided, double alpha) {
 double discounted_weight(double total, double d2_over_r) { return total / (1 + total * d2_over_r); }
 
 SideStep accumulate_side(const Present& present, const History& beyond, const RecursiveParameters& recursive,
-                         const RectifyParameters& rectify, const TwoSidedParameters& two_sided,
-                         std::optional<glm::dvec2> jitter, std::uint32_t restart_bit, const DiagnosticsWanted& wanted,
-                         Workers& workers, Isa isa) {
+                         const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, std::uint32_t restart_bit,
+                         const DiagnosticsWanted& wanted, Workers& workers, Isa isa) {
   const Window& w = present.color.window();
   SideStep step{make_state(present, recursive), {Plane<glm::vec4>(w), Plane<float>(w), Plane<float>(w), {}, {}, {}}};
   if (w.empty()) return step;
   if (wanted.reject) step.strict.reject = Plane<std::uint32_t>(w);
   AccumulateDiagnostics diagnostics;
-  step.strict.counts =
-      walk_rows(present, beyond, recursive, rectify, two_sided, jitter, restart_bit, {wanted.clip, false, false},
-                diagnostics, step.state, workers, isa,
-                [&](const AccumulateView& v, int y, const RowScratch& s) { keep_strict(v, y, s, step.strict); });
+  step.strict.counts = walk_rows(
+      present, beyond, recursive, rectify, jitter, restart_bit, {wanted.clip, false, false}, diagnostics, step.state,
+      workers, isa, [&](const AccumulateView& v, int y, const RowScratch& s) { keep_strict(v, y, s, step.strict); });
   step.strict.clip = std::move(diagnostics.clip);
   return step;
 }
 
 MergedStep accumulate_both(const Present& present, const History& beyond, const StrictSide& other,
                            const RecursiveParameters& recursive, const RectifyParameters& rectify,
-                           const TwoSidedParameters& two_sided, std::optional<glm::dvec2> jitter,
-                           std::uint32_t restart_bit, const DiagnosticsWanted& wanted, Workers& workers, Isa isa) {
+                           std::optional<glm::dvec2> jitter, std::uint32_t restart_bit, const DiagnosticsWanted& wanted,
+                           Workers& workers, Isa isa) {
   const Window& w = present.color.window();
   MergedStep step{make_state(present, recursive), {}};
   if (w.empty()) return step;
@@ -239,9 +237,9 @@ MergedStep accumulate_both(const Present& present, const History& beyond, const 
     diagnostics.count_future = Plane<float>(w);
   }
   if (wanted.reject) diagnostics.reject_future = other.reject.clone();
-  step.resolved.counts = walk_rows(
-      present, beyond, recursive, rectify, two_sided, jitter, restart_bit, wanted, diagnostics, step.state, workers,
-      isa, [&](const AccumulateView& v, int y, const RowScratch& s) { merge_row(v, y, s, other, step.resolved); });
+  step.resolved.counts =
+      walk_rows(present, beyond, recursive, rectify, jitter, restart_bit, wanted, diagnostics, step.state, workers, isa,
+                [&](const AccumulateView& v, int y, const RowScratch& s) { merge_row(v, y, s, other, step.resolved); });
   step.resolved.counts.clipped += other.counts.clipped;
   return step;
 }

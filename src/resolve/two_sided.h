@@ -44,9 +44,8 @@ struct SideStep {
 /// before on the way through the past, the frame after on the way back. The side weighs its samples by (1 - alpha)^k
 /// under AlphaRule::fixed; equally, up to the weight that alpha leaves to history, under AlphaRule::mean.
 SideStep accumulate_side(const Present& present, const History& beyond, const RecursiveParameters& recursive,
-                         const RectifyParameters& rectify, const TwoSidedParameters& two_sided,
-                         std::optional<glm::dvec2> jitter, std::uint32_t restart_bit, const DiagnosticsWanted& wanted,
-                         Workers& workers, Isa isa = Isa::automatic);
+                         const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, std::uint32_t restart_bit,
+                         const DiagnosticsWanted& wanted, Workers& workers, Isa isa = Isa::automatic);
 
 /// The same step, its strict side merged with that of the other side and with the present:
 /// (W1 c1 + w s + W2 c2) / (W1 + w + W2). Swapping the sides gives the same bits. `other` is the future where
@@ -57,8 +56,7 @@ struct MergedStep {
 };
 MergedStep accumulate_both(const Present& present, const History& beyond, const StrictSide& other,
                            const RecursiveParameters& recursive, const RectifyParameters& rectify,
-                           const TwoSidedParameters& two_sided, std::optional<glm::dvec2> jitter,
-                           std::uint32_t restart_bit, const DiagnosticsWanted& wanted, Workers& workers,
-                           Isa isa = Isa::automatic);
+                           std::optional<glm::dvec2> jitter, std::uint32_t restart_bit, const DiagnosticsWanted& wanted,
+                           Workers& workers, Isa isa = Isa::automatic);
 
 }  // namespace varve

@@ -70,8 +70,8 @@ std::vector<StrictSide> pass_frame(SideRun& run, SourceFrame& source, const Shar
   std::vector<StrictSide> strict;
   pass_subjects(run, source, vectors, p, workers,
                 [&](std::size_t, const Present& present, const History& state, std::optional<glm::dvec2> jitter) {
-                  SideStep step = accumulate_side(present, state, p.recursive, p.rectify, p.two_sided, jitter,
-                                                  kRejectCut, options.wanted, workers);
+                  SideStep step = accumulate_side(present, state, p.recursive, p.rectify, jitter, kRejectCut,
+                                                  options.wanted, workers);
                   strict.push_back(std::move(step.strict));
                   return std::move(step.state);
                 });
@@ -85,8 +85,8 @@ std::vector<Accumulated> merge_frame(SideRun& run, SourceFrame& source, const Sh
   std::vector<Accumulated> resolved;
   pass_subjects(run, source, vectors, p, workers,
                 [&](std::size_t k, const Present& present, const History& state, std::optional<glm::dvec2> jitter) {
-                  MergedStep step = accumulate_both(present, state, others[k], p.recursive, p.rectify, p.two_sided,
-                                                    jitter, kRejectCut, options.wanted, workers);
+                  MergedStep step = accumulate_both(present, state, others[k], p.recursive, p.rectify, jitter,
+                                                    kRejectCut, options.wanted, workers);
                   resolved.push_back(std::move(step.resolved));
                   return std::move(step.state);
                 });

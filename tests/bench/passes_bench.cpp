@@ -3,7 +3,9 @@
 
 #include "motion/motion.h"
 #include "resolve/accumulate.h"
+#include "resolve/bspline.h"
 #include "resolve/sample_weights.h"
+#include "resolve/sharpen.h"
 #include "support/scenes.h"
 
 namespace varve {
@@ -88,6 +90,30 @@ void BM_weigh_samples(benchmark::State& state, SampleFilter filter) {
   per_pixel(state);
 }
 
+void BM_unjitter(benchmark::State& state) {
+  for (auto _ : state) {
+    const Plane<glm::vec4> out = unjitter_bilinear(scene().next, {0.2, -0.3}, scene().workers);
+    check(state, out.at(50, 50).a > 0);
+  }
+  per_pixel(state);
+}
+
+void BM_bspline_coefficients(benchmark::State& state, int degree) {
+  for (auto _ : state) {
+    const Plane<glm::vec4> out = bspline_coefficients(scene().history.color, degree, scene().workers);
+    check(state, out.window() == kFrame);
+  }
+  per_pixel(state);
+}
+
+void BM_sharpen(benchmark::State& state) {
+  for (auto _ : state) {
+    const Plane<glm::vec4> out = sharpen(scene().history.color, scene().history.total, 0.5, scene().workers);
+    check(state, out.at(7, 7).a == scene().history.color.at(7, 7).a);
+  }
+  per_pixel(state);
+}
+
 void BM_accumulate(benchmark::State& state, const RecursiveParameters& recursive, const RectifyParameters& rectify,
                    Isa isa) {
   for (auto _ : state) {
@@ -152,6 +178,10 @@ BENCHMARK_CAPTURE(BM_dilate, longest, Dilation::longest)->Unit(benchmark::kMilli
 BENCHMARK_CAPTURE(BM_weigh_samples, tent, SampleFilter::tent)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(BM_weigh_samples, gaussian, SampleFilter::gaussian)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(BM_weigh_samples, blackman_harris, SampleFilter::blackman_harris)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_unjitter)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_bspline_coefficients, 3, 3)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_bspline_coefficients, 5, 5)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_sharpen)->Unit(benchmark::kMillisecond);
 // The whole row kernel, choice by choice; `salvi` is the preset.
 #define ACCUMULATE(name, recursive, rectify, isa) \
   BENCHMARK_CAPTURE(BM_accumulate, name, recursive, rectify, isa)->Unit(benchmark::kMillisecond)
@@ -161,6 +191,9 @@ ACCUMULATE(bilinear_no_box, with_filter(HistoryFilter::bilinear), with_box(Box::
 ACCUMULATE(catmull_rom_no_box, {}, with_box(Box::none), Isa::automatic);
 ACCUMULATE(catmull_rom9_no_box, with_filter(HistoryFilter::catmull_rom9), with_box(Box::none), Isa::automatic);
 ACCUMULATE(catmull_rom5_no_box, with_filter(HistoryFilter::catmull_rom5), with_box(Box::none), Isa::automatic);
+ACCUMULATE(cubic_no_box, with_filter(HistoryFilter::cubic), with_box(Box::none), Isa::automatic);
+ACCUMULATE(bspline3_no_box, with_filter(HistoryFilter::bspline3), with_box(Box::none), Isa::automatic);
+ACCUMULATE(bspline5_no_box, with_filter(HistoryFilter::bspline5), with_box(Box::none), Isa::automatic);
 ACCUMULATE(minmax, {}, with_box(Box::minmax), Isa::automatic);
 ACCUMULATE(variance_minmax, {}, with_box(Box::variance_minmax), Isa::automatic);
 ACCUMULATE(variance_ycocg, {}, with_box(Box::variance, BoxSpace::ycocg), Isa::automatic);

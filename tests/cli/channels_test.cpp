@@ -233,12 +233,12 @@ std::vector<float> green_of(const std::filesystem::path& path, int part) {
 
 TEST_F(Channels, LightsMayLieInAPartOfTheirOwnWithAnotherWindow) {
   for (int frame = 1; frame <= 3; ++frame) write_parts(folder / ("p.000" + std::to_string(frame) + ".exr"), frame);
-  const Outcome outcome = run_varve(
-      {"resolve", "p.####.exr", "-o", "out/p.####.exr", "--layer", "beauty", "--channels", "key", "--convention", "none"},
-      folder.path());
+  const Outcome outcome = run_varve({"resolve", "p.####.exr", "-o", "out/p.####.exr", "--layer", "beauty", "--channels",
+                                     "key", "--convention", "none"},
+                                    folder.path());
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const std::vector<float> beauty = green_of(folder / "out/p.0003.exr", 0), light = green_of(folder / "out/p.0003.exr", 1),
-                           before = green_of(folder / "p.0003.exr", 1);
+  const std::vector<float> beauty = green_of(folder / "out/p.0003.exr", 0),
+                           light = green_of(folder / "out/p.0003.exr", 1), before = green_of(folder / "p.0003.exr", 1);
   int changed = 0;
   for (int y = -2; y < 14; ++y)
     for (int x = -2; x < 18; ++x) {

@@ -29,8 +29,8 @@ double variance_around(const Present& present, int x, int y) {
 }  // namespace
 
 SidePixel side_pixel(const Present& present, const History& beyond, const RecursiveParameters& p,
-                     const RectifyParameters& rectify, const TwoSidedParameters& two_sided,
-                     std::optional<glm::dvec2> jitter, unsigned restart_bit, int x, int y) {
+                     const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
+                     int y) {
   SidePixel out;
   Color fetched{};
   RectifyParameters undiscounted = rectify;

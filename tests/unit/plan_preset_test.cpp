@@ -75,6 +75,22 @@ TEST(Presets, Salvi) {
   EXPECT_NE(p.recursive.history_filter, HistoryFilter::bilinear);
 }
 
+TEST(Presets, RecipesOfTheSources) {
+  const Parameters lopez = preset_parameters(*find_preset("lopez"));
+  EXPECT_EQ(lopez.recursive.history_filter, HistoryFilter::catmull_rom);
+  EXPECT_EQ(lopez.recursive.alpha_rule, AlphaRule::fixed);
+  EXPECT_EQ(lopez.motion.dilation, Dilation::nearest);
+  EXPECT_EQ(lopez.rectify.gamma, 1.5);
+  const Parameters crytek2 = preset_parameters(*find_preset("crytek2"));
+  EXPECT_EQ(crytek2.recursive.alpha, 0.5);
+  EXPECT_EQ(crytek2.rectify.box, Box::none);
+  const Parameters inside = preset_parameters(*find_preset("inside"));
+  EXPECT_EQ(inside.recursive.unjitter, Unjitter::bilinear);
+  EXPECT_EQ(inside.recursive.history_filter, HistoryFilter::bilinear);
+  EXPECT_EQ(inside.motion.dilation, Dilation::nearest);
+  EXPECT_EQ(inside.rectify.anchor, BoxAnchor::mean);
+}
+
 TEST(Presets, NamesAreUniqueAndValuesAreRead) {
   std::set<std::string_view> names;
   for (const Preset& preset : presets()) {

@@ -123,9 +123,30 @@ TEST(Plan, WhatCannotBeDoneIsRefusedWithTheRemedy) {
   EXPECT_TRUE(make_plan(partly, weights, {}, 2).use_jitter);
   partly.frames_with_jitter = 2;
   EXPECT_NE(message_of([&] { make_plan(partly, weights, {}, 2); }).find("2 of 3"), std::string::npos);
+  Parameters unjitter, both = weights;
+  unjitter.recursive.unjitter = both.recursive.unjitter = Unjitter::bilinear;
+  EXPECT_NE(message_of([&] { make_plan(sequence(kFull), unjitter, {}, 2); }).find("--unjitter none"),
+            std::string::npos);
+  partly.frames_with_jitter = 3;
+  EXPECT_TRUE(pass(make_plan(partly, unjitter, {}, 2), "unjitter").runs);
+  EXPECT_NE(message_of([&] { make_plan(partly, both, {}, 2); }, ExitCode::usage).find("--sample-filter"),
+            std::string::npos);
   OutputRequest output;
   output.aovs = {"banana"};
   message_of([&] { make_plan(sequence(kFull), {}, output, 2); }, ExitCode::usage);
+}
+
+TEST(Plan, FiltersThatAmplifyAreRefusedWithTheirFigures) {
+  Parameters sharp;
+  sharp.recursive.history_filter = HistoryFilter::cubic;
+  EXPECT_TRUE(pass(make_plan(sequence(kFull), sharp, {}, 2), "history").runs);  // Catmull-Rom's constants
+  sharp.recursive.cubic_c = 0.75;
+  const std::string text = message_of([&] { make_plan(sequence(kFull), sharp, {}, 2); }, ExitCode::usage);
+  for (const char* part : {"cubic-c 0.75", "1.029", "0.055", "bspline5"})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  sharp.recursive.cubic_b = 1;  // so soft that nothing is amplified
+  sharp.recursive.cubic_c = 0;
+  EXPECT_TRUE(pass(make_plan(sequence(kFull), sharp, {}, 2), "history").runs);
 }
 
 TEST(Plan, MemoryFollowsTheFormula) {

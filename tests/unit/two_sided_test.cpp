@@ -43,13 +43,12 @@ struct Frame {
 };
 
 SideStep side(const Present& present, const History& beyond, const Settings& s, Workers& workers) {
-  return accumulate_side(present, beyond, s.recursive, s.rectify, s.two_sided, s.jitter, kRejectCut, kAll, workers);
+  return accumulate_side(present, beyond, s.recursive, s.rectify, s.jitter, kRejectCut, kAll, workers);
 }
 
 MergedStep both(const Present& present, const History& beyond, const StrictSide& other, const Settings& s,
                 Workers& workers) {
-  return accumulate_both(present, beyond, other, s.recursive, s.rectify, s.two_sided, s.jitter, kRejectCut, kAll,
-                         workers);
+  return accumulate_both(present, beyond, other, s.recursive, s.rectify, s.jitter, kRejectCut, kAll, workers);
 }
 
 /// The whole sequence at once: back through the future, then on through the past.
@@ -119,7 +118,7 @@ void expect_twin(const Present& present, const History& beyond, const StrictSide
   for (int y = w.y0; y < w.y1; ++y)
     for (int x = w.x0; x < w.x1; ++x) {
       const reference::SidePixel slow =
-          reference::side_pixel(present, beyond, s.recursive, s.rectify, s.two_sided, s.jitter, kRejectCut, x, y);
+          reference::side_pixel(present, beyond, s.recursive, s.rectify, s.jitter, kRejectCut, x, y);
       reference::Pixel other;
       for (std::size_t k = 0; k < 4; ++k) other.color[k] = double(future.color.at(x, y)[int(k)]);
       other.total = double(future.total.at(x, y));
@@ -419,7 +418,7 @@ TEST(TwoSided, ThreadsAndProcessorsDoNotChangeAByte) {
   const History h = side(present, {}, s, one).state;
   const StrictSide future = side(present, h, s, one).strict;
   const auto run = [&](Workers& workers, Isa isa) {
-    return accumulate_both(present, h, future, s.recursive, s.rectify, s.two_sided, {}, 1, kAll, workers, isa).resolved;
+    return accumulate_both(present, h, future, s.recursive, s.rectify, {}, 1, kAll, workers, isa).resolved;
   };
   const Accumulated a = run(one, Isa::baseline);
   EXPECT_TRUE(same_bits(a.history.color, run(many, Isa::baseline).history.color));
