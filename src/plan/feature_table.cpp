@@ -230,7 +230,7 @@ constexpr Feature kFeatures[] = {
      "--window=7; other passes by --channels"},
     {beyond, 1, "", "Past and future summed, the present once", Reach::option, "--accumulator=two-sided"},
     {beyond, 2, "", "Raw samples of many frames, each at its true position, resampled once", Reach::option,
-     "--accumulator=gather"},
+     "--accumulator=gather --reach --cells --sigma --gain --gain-window"},
     {beyond, 3, "", "The exact convex hull with a certified early stop", Reach::option, "--box=hull --hull-passes"},
     {beyond, 4, "", "Rectification against the statistics of many frames", Reach::planned,
      "the box is that of one frame"},

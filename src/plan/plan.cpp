@@ -334,11 +334,13 @@ class Planner {
       for (const Companion& companion : subject.companions)
         channels += std::size_t(std::count_if(companion.channels.begin(), companion.channels.end(),
                                               [](const auto& channel) { return channel.has_value(); }));
+    const std::string alike = parameters_.accumulator == Accumulator::gather
+                                  ? "the same samples of the frames around, weighed alike"
+                                  : "the same pixels of the history, moved as far, blended alike";
     add("companions", channels > 0,
         channels == 0 ? "no channels go by the weights of a color; --channels names some"
-                      : std::to_string(channels) +
-                            " channels go by the weights of their color: the same pixels of the history, moved as far, "
-                            "blended alike; lights that add up to the color still do, and each frame reports how well");
+                      : std::to_string(channels) + " channels go by the weights of their color: " + alike +
+                            "; lights that add up to the color still do, and each frame reports how well");
   }
 
   void fallback() {
@@ -458,7 +460,7 @@ std::vector<const Aov*> planned_aovs(const OutputRequest& request, Accumulator a
 
 Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const OutputRequest& output, int threads) {
   check_possible(info, parameters);
-  check_tests(info, parameters);
+  if (parameters.accumulator != Accumulator::gather) check_tests(info, parameters);
   Plan plan;
   Planner planner(info, parameters, output, plan);
   planner.add("read", true, "");

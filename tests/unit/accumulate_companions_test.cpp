@@ -54,7 +54,7 @@ std::vector<Settings> every_setting() {
         for (const BoxSpace space : {BoxSpace::rgb, BoxSpace::ycocg})
           for (const int window : {3, 7}) {
             Settings s;
-            s.rectify = {box, 0.75, window, rule, anchor, space};
+            s.rectify = {box, 0.75, window, WindowMoments::direct, rule, anchor, space};
             s.name = "box " + std::to_string(int(box)) + " rule " + std::to_string(int(rule)) + " anchor " +
                      std::to_string(int(anchor)) + " space " + std::to_string(int(space)) + " window " +
                      std::to_string(window);
@@ -80,6 +80,42 @@ std::vector<Settings> every_setting() {
     s.name = "samples " + std::to_string(int(filter));
     all.push_back(s);
   }
+  // What other row passes and filters do to the color.
+  for (const Box box : {Box::rounded, Box::dynamic4, Box::kdop13, Box::pca, Box::ellipsoid, Box::hull})
+    for (const BoxRule rule : {BoxRule::clip, BoxRule::project, BoxRule::off})
+      for (const BoxSpace space : {BoxSpace::rgb, BoxSpace::log}) {
+        Settings s;
+        s.rectify.box = box;
+        s.rectify.rule = rule;
+        s.rectify.space = space;
+        s.rectify.clip_discount = rule == BoxRule::off;
+        s.name = "shape " + std::to_string(int(box)) + " rule " + std::to_string(int(rule)) + " space " +
+                 std::to_string(int(space));
+        all.push_back(s);
+      }
+  for (const double b : {0.0, 1.0 / 3, 1.0}) {
+    Settings s;
+    s.recursive.history_filter = HistoryFilter::cubic;
+    s.recursive.cubic_b = b;
+    s.recursive.cubic_c = (1 - b) / 2;
+    s.recursive.unjitter = Unjitter::bilinear;
+    s.jitter = glm::dvec2(0.3, -0.4);
+    s.name = "unjitter, cubic " + std::to_string(b);
+    all.push_back(s);
+  }
+  for (const OnReject on_reject : {OnReject::restart, OnReject::blur, OnReject::weight})
+    for (const Weighing weighing : {Weighing::none, Weighing::luminance, Weighing::logarithm}) {
+      Settings s;
+      s.recursive.disocclusion = Disocclusion::depth;
+      s.recursive.reject.depth_slope = 1;
+      s.recursive.reject.acceleration = 2;
+      s.recursive.reject.on_reject = on_reject;
+      s.recursive.weight.weighing = weighing;
+      s.recursive.weight.feedback = Feedback::luma;
+      s.recursive.weight.anti_flicker = 0.5;
+      s.name = "on reject " + std::to_string(int(on_reject)) + " weighing " + std::to_string(int(weighing));
+      all.push_back(s);
+    }
   return all;
 }
 
@@ -144,7 +180,7 @@ TEST(Companions, AgreeWithTheirSlowTwin) {
             recursive.history_filter = filter;
             recursive.dering = dering;
             recursive.disocclusion = Disocclusion::depth;
-            const RectifyParameters rectify{box, 1.5, 3, rule, anchor, BoxSpace::rgb};
+            const RectifyParameters rectify{box, 1.5, 3, WindowMoments::direct, rule, anchor, BoxSpace::rgb};
             History previous;
             for (int frame = 0; frame < 3; ++frame) {
               // Rounding of the color beside highlights would decide the part of the way; alpha the twin leaves out.
@@ -209,7 +245,7 @@ TEST(Companions, ALightThatGoesOutLeavesTheOthersAsTheyAre) {
   for (const BoxRule rule : {BoxRule::clip, BoxRule::clamp})
     for (const BoxAnchor anchor : {BoxAnchor::present, BoxAnchor::mean})
       for (const BoxSpace space : {BoxSpace::rgb, BoxSpace::ycocg}) {
-        const RectifyParameters rectify{Box::variance, 1, 3, rule, anchor, space};
+        const RectifyParameters rectify{Box::variance, 1, 3, WindowMoments::direct, rule, anchor, space};
         History history;
         for (const float key : {5.0f, 5.0f, 5.0f, 0.0f}) {
           Present p = test::flat_present(w, glm::vec4(key + 4, key + 5, key + 6, 1), workers);
