@@ -92,7 +92,8 @@ TEST_F(Channels, LightsStillAddUpToTheBeauty) {
   for (const std::vector<std::string>& more : {std::vector<std::string>{},
                                                {"--rule", "clamp"},
                                                {"--box", "minmax", "--anchor", "mean"},
-                                               {"--space", "ycocg", "--history-filter", "bilinear"}}) {
+                                               {"--space", "ycocg", "--history-filter", "bilinear"},
+                                               {"--accumulator", "gather", "--reach", "2"}}) {
     std::vector<std::string> line = {"--channels", "Key,Fill", "--report", "report.json"};
     line.insert(line.end(), more.begin(), more.end());
     const Outcome outcome = run(line);
@@ -183,9 +184,13 @@ TEST_F(Channels, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(bytes_of(folder / "out/o.0006.exr"), one);
 }
 
+TEST_F(Channels, FiltersThatCannotKeepTheSumAreRefused) {
+  EXPECT_EQ(run({"--channels", "Key", "--history-filter", "bspline3"}).code, 2);
+}
+
 TEST_F(Channels, AccumulatorsThatCannotKeepTheSumAreRefused) {
-  const Outcome outcome = run({"--channels", "Key", "--accumulator", "gather"});
-  EXPECT_EQ(outcome.code, 4) << outcome.err;
+  const Outcome outcome = run({"--channels", "Key", "--accumulator", "two-sided"});
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
   EXPECT_NE(outcome.err.find("--channel-weights own"), std::string::npos) << outcome.err;
 }
 

@@ -141,9 +141,13 @@ TEST(Usage, BashCompletes) {
 
 TEST(Usage, AFullDiskIsNoticed) {
   Folder folder;
-  const std::string line = std::string(VARVE_PROGRAM) + " help resolve > /dev/full 2> " + (folder / "err").string();
-  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 5);
-  EXPECT_NE(bytes_of(folder / "err").find("standard output"), std::string::npos);
+  // What fits the buffer of the stream, and what does not.
+  for (const std::string topic : {"probe", "resolve", "resolve --all"}) {
+    const std::string line =
+        std::string(VARVE_PROGRAM) + " help " + topic + " > /dev/full 2> " + (folder / "err").string();
+    EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 5) << topic;
+    EXPECT_NE(bytes_of(folder / "err").find("standard output"), std::string::npos) << topic;
+  }
 }
 
 TEST(Usage, AReaderThatGoesAwayIsAQuietEnd) {

@@ -81,14 +81,20 @@ TEST(Presets, RecipesOfTheSources) {
   EXPECT_EQ(lopez.recursive.alpha_rule, AlphaRule::fixed);
   EXPECT_EQ(lopez.motion.dilation, Dilation::nearest);
   EXPECT_EQ(lopez.rectify.gamma, 1.5);
+  EXPECT_EQ(lopez.rectify.anchor, BoxAnchor::center);
+  EXPECT_EQ(lopez.recursive.weight.weighing, Weighing::luminance);
   const Parameters crytek2 = preset_parameters(*find_preset("crytek2"));
   EXPECT_EQ(crytek2.recursive.alpha, 0.5);
   EXPECT_EQ(crytek2.rectify.box, Box::none);
+  EXPECT_EQ(crytek2.recursive.reject.speed, 1);
   const Parameters inside = preset_parameters(*find_preset("inside"));
   EXPECT_EQ(inside.recursive.unjitter, Unjitter::bilinear);
   EXPECT_EQ(inside.recursive.history_filter, HistoryFilter::bilinear);
   EXPECT_EQ(inside.motion.dilation, Dilation::nearest);
-  EXPECT_EQ(inside.rectify.anchor, BoxAnchor::mean);
+  EXPECT_EQ(inside.rectify.anchor, BoxAnchor::center);
+  EXPECT_EQ(inside.rectify.box, Box::rounded);
+  EXPECT_EQ(inside.recursive.weight.feedback, Feedback::luma);
+  EXPECT_EQ(inside.fallback.motion_blur, MotionBlur::own);
 }
 
 TEST(Presets, NamesAreUniqueAndValuesAreRead) {
