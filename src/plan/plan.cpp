@@ -50,10 +50,11 @@ void check_two_sided(const SequenceInfo& info, const Parameters& parameters) {
     throw Failure(ExitCode::usage,
                   "--accumulator two-sided discounts what the box moved, and --rule off moves nothing; give another "
                   "--rule, or --clip-discount off");
-  if (!(parameters.recursive.weight == WeightParameters{}))
+  const WeightParameters& w = parameters.recursive.weight;
+  if (w.feedback != Feedback::fixed || w.speed_alpha > 0 || w.anti_flicker > 0 || w.weighing != Weighing::none)
     throw Failure(ExitCode::usage,
-                  "--accumulator two-sided weighs every sample by its age alone; leave out --feedback, --speed-alpha, "
-                  "--anti-flicker, --reactive and --weighing, or give --accumulator recursive");
+                  "--accumulator two-sided weighs every sample by its age alone; give --feedback fixed --speed-alpha 0 "
+                  "--anti-flicker 0 --weighing none with it, or --accumulator recursive");
 }
 
 // Choices that no sequence can make possible.
@@ -260,7 +261,7 @@ class Planner {
 
   void weights() {
     if (parameters_.accumulator == Accumulator::two_sided)
-      return add("weights", false, "both sides weigh by what they have seen");
+      return add("weights", false, "both sides weigh by what they have seen; masks have no say");
     const WeightParameters& w = parameters_.recursive.weight;
     const bool reactive = std::any_of(info_.first.subjects.begin(), info_.first.subjects.end(),
                                       [](const Subject& s) { return s.reactive.has_value(); });

@@ -106,6 +106,19 @@ std::vector<Settings> many_settings() {
   depth.recursive.disocclusion = Disocclusion::depth;
   depth.rectify.space = BoxSpace::ycocg;
   all.push_back(depth);
+  // Tests between the steps: some of the four history pixels stand in for the others, and trust is between 0 and 1.
+  Settings tests = depth;
+  tests.recursive.reject.depth_slope = 1;
+  tests.recursive.reject.acceleration_low = 1;
+  tests.recursive.reject.acceleration = 6;
+  tests.recursive.reject.speed = 5;
+  all.push_back(tests);
+  // Shapes that the row kernel has no code for.
+  for (const Box box : {Box::rounded, Box::pca, Box::ellipsoid}) {
+    Settings shape;
+    shape.rectify.box = box;
+    all.push_back(shape);
+  }
   return all;
 }
 
