@@ -72,15 +72,14 @@ Value<Settings> convention_value() {
   return value;
 }
 
-Value<Settings> size_value() {
-  return {[](Settings& s, std::string_view text) {
+Value<Settings> size_value(std::function<void(Settings&, int width, int height)> set) {
+  return {[set](Settings& s, std::string_view text) {
             const std::size_t x = std::min(text.find('x'), text.size());
             const auto width = parse_number<int>(text.substr(0, x));
             const auto height = parse_number<int>(text.substr(std::min(x + 1, text.size())));
             constexpr int kLongest = 16384;
             if (!width || !height || *width < 1 || *height < 1 || *width > kLongest || *height > kLongest) return false;
-            s.synth.width = *width;
-            s.synth.height = *height;
+            set(s, *width, *height);
             return true;
           },
           nullptr,

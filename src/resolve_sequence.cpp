@@ -11,6 +11,7 @@
 #include "exr/write_frame.h"
 #include "plan/preset.h"
 #include "resolve/accumulate.h"
+#include "stages/find_cut.h"
 #include "stages/frame_window.h"
 #include "stages/gather_frame.h"
 #include "stages/preflight.h"
@@ -59,6 +60,11 @@ Setup set_up(const ResolveJob& job) {
   const JitterSource jitter = parse_jitter_source(job.jitter);
   SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
   check_roles(job, info);
+  // By the time that its pixels show a cut, a frame has met those after it already.
+  if (job.find_cuts && job.parameters.accumulator != Accumulator::recursive)
+    throw Failure(ExitCode::usage,
+                  "--find-cuts goes frame by frame, and this --accumulator looks ahead; name the first frames of shots "
+                  "with --cuts, or give --accumulator recursive");
   Plan plan = make_plan(info, job.parameters, job.request, job.threads);
   Setup s{job,
           std::move(info),
@@ -203,17 +209,34 @@ FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& worker
 /// One subject: the present meets the history.
 struct Resolved {
   Accumulated accumulated;
-  History prediction;  ///< only where the diagnostic plane of that name is asked for
+  History prediction = {};         ///< only where the diagnostic plane of that name is asked for
+  Plane<glm::vec4> finished = {};  ///< what is written, where that is not what the history keeps
 };
+
+/// Decides whether a frame begins a new shot, before it meets its history: marks it in the schedule if so, and says
+/// why. `before` becomes the trace of this frame.
+void look_for_cut(const SourceFrame& source, FrameTrace& before, ScheduledFrame& scheduled, const ResolveEvents& events,
+                  Workers& workers) {
+  const Present& present = source.presents.front();
+  const Part& part = source.headers.files.front().parts[std::size_t(part_of(source.headers.subjects.front()))];
+  FrameTrace now = trace_of(present, part, scheduled.frame, workers);
+  if (!scheduled.restart) {
+    const CutEvidence evidence = judge_cut(before, now, present);
+    if (evidence.cut) {
+      scheduled.restart = true;
+      scheduled.restart_reason = "cut found: " + evidence.sentence;
+      if (events.warning)
+        events.warning("frame " + std::to_string(scheduled.frame) + " is taken for the first of a new shot: " +
+                       evidence.sentence + "; --find-cuts off lets history pass");
+    }
+  }
+  before = std::move(now);
+}
 
 Resolved resolve_recursive(const Setup& s, const FrameHeaders& headers, const Present& present,
                            const ScheduledFrame& scheduled, SubjectState& state, Workers& workers) {
   const Parameters& parameters = s.job.parameters;
   if (scheduled.restart) state.history = {};
-  if (!present.companions.empty())
-    throw Failure(
-        ExitCode::inconsistent,
-        "the recursive accumulator resolves --channels by their own weights only; give --channel-weights own");
   Resolved r;
   std::optional<glm::dvec2> jitter;
   if (headers.jitter) jitter = glm::dvec2(headers.jitter->x, headers.jitter->y);
@@ -253,13 +276,26 @@ std::vector<Resolved> resolve_gather(const Setup& s, const FrameWindow& window, 
   return resolved;
 }
 
-void count(FrameReport& report, const SourceFrame& source, const std::vector<Resolved>& resolved) {
+/// What is written where that is not what the history keeps; else empty. What stands in for a pixel is sharpened too.
+Plane<glm::vec4> finish(const Present& present, const History& resolved, const Parameters& parameters,
+                        Workers& workers) {
+  Plane<glm::vec4> shown = fall_back(present, resolved, parameters.fallback, workers);
+  if (!(parameters.finish.sharpen > 0)) return shown;
+  return sharpen(shown.empty() ? resolved.color : shown, resolved.total, parameters.finish.sharpen, workers);
+}
+
+void count(FrameReport& report, const SourceFrame& source, const std::vector<Resolved>& resolved, Workers& workers) {
   report.vectors_bad += source.vectors_bad;
   for (std::size_t k = 0; k < resolved.size(); ++k) {
     report.pixels += source.presents[k].color.window().pixels();
     report.not_finite += source.presents[k].not_finite;
     report.restarted += resolved[k].accumulated.counts.restarted;
     report.clipped += resolved[k].accumulated.counts.clipped;
+    for (std::size_t bit = 0; bit < report.rejected.size(); ++bit)
+      report.rejected[bit] += resolved[k].accumulated.counts.rejected[bit];
+    if (source.presents[k].companions.empty()) continue;
+    report.companions_not_finite += source.presents[k].companions_not_finite;
+    report.lights = report.lights + measure_light_sum(source.presents[k], resolved[k].accumulated.history, workers);
   }
 }
 
@@ -309,11 +345,12 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
   if (events.planned) events.planned(s.info, s.plan);
 
   // Preflight: what will be written, and whether it can be.
-  const std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash);
+  std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash);
   check_outputs(job, schedule);
 
   Workers workers(job.threads);
   std::vector<SubjectState> states(s.info.first.subjects.size());
+  FrameTrace trace;
   const auto read = [&](std::size_t index) { return read_frame(s, schedule[index], states, workers); };
   FrameWindow window(read);
   ResolveSummary summary;
@@ -328,7 +365,7 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
                       job.request.spill_folder, read, stop, workers);
 
   for (std::size_t i = 0; i < schedule.size() && !stop(); ++i) {
-    const ScheduledFrame& scheduled = schedule[i];
+    ScheduledFrame& scheduled = schedule[i];
     if (!scheduled.write && !s.reach.back_to_restart) continue;  // there for its neighbors only
     FrameReport report;
     report.frame = scheduled.frame;
@@ -355,11 +392,18 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     if (stop()) break;
 
     // Resolve, subject by subject.
+    if (job.find_cuts) {
+      look_for_cut(source, trace, scheduled, events, workers);
+      report.restart = scheduled.restart_reason;
+    }
     std::vector<Resolved> resolved = two_sided ? resolve_two_sided(*two_sided, i, source)
                                      : gathers ? resolve_gather(s, window, i, {first, last}, states, workers)
                                                : resolve_recursive(s, source, scheduled, states, workers);
     if (summary.stopped) break;
-    count(report, source, resolved);
+    count(report, source, resolved, workers);
+    if (scheduled.write)
+      for (std::size_t k = 0; k < resolved.size(); ++k)
+        resolved[k].finished = finish(source.presents[k], resolved[k].accumulated.history, job.parameters, workers);
     report.resolve_seconds = clock.lap();
     if (stop()) break;
 
@@ -367,8 +411,8 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     if (scheduled.write && !scheduled.complete) {
       std::vector<ResolvedSubject> subjects;
       for (std::size_t k = 0; k < resolved.size(); ++k)
-        subjects.push_back(
-            {&source.headers.subjects[k], &source.presents[k], &resolved[k].accumulated, &resolved[k].prediction});
+        subjects.push_back({&source.headers.subjects[k], &source.presents[k], &resolved[k].accumulated,
+                            &resolved[k].prediction, &resolved[k].finished});
       const FileSet beside = source.pixels.empty() ? read_beside(s, source.headers, workers) : FileSet();
       const FileSet& pixels = source.pixels.empty() ? beside : source.pixels;
       in_frame(scheduled.frame, [&] {

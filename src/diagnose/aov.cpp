@@ -8,12 +8,12 @@ constexpr Aov kAovs[] = {
      "Effective sample count: one over the sum of squared weights of all samples in the pixel. 0 where nothing valid "
      "was seen."},
     {"clip", "", PixelType::float32, "relative", "0 to 2", "inferno", 0, 1,
-     "Clip distance: how far rectification moved the history, in RGB, over the longer of what it was and what it "
-     "became.",
+     "Clip distance: how far rectification moved the history (under --rule off: would have moved it), in RGB, over the "
+     "longer of what it was and what it became.",
      kByRecursive | kByTwoSided},
-    {"reject", "", PixelType::uint32, "bits", "0 to 127", "turbo", 0, 127,
-     "Why history was not used: a sum of the bits listed under REJECTION BITS. 0 where history was used. With "
-     "--accumulator two-sided: why the past was not used."},
+    {"reject", "", PixelType::uint32, "bits", "0 to 8191", "turbo", 0, 8191,
+     "Why history was not used, or counts half or less of what it would: a sum of the bits listed under REJECTION "
+     "BITS. 0 where history was used. With --accumulator two-sided: why the past was not used."},
     {"motion", "xy", PixelType::float32, "pixels, y down", "any", "blue-red", -16, 16,
      "Backward motion used, after dilation: previous position minus this position."},
     {"weight", "", PixelType::float32, "fraction", "0 to 1", "viridis", 0, 1,
@@ -31,7 +31,7 @@ constexpr Aov kAovs[] = {
      kByTwoSided | kByGather},
     {"count-future", "", PixelType::float32, "samples", "0 and up", "viridis", 0, 20, "The same of the frames after.",
      kByTwoSided | kByGather},
-    {"reject-future", "", PixelType::uint32, "bits", "0 to 127", "turbo", 0, 127,
+    {"reject-future", "", PixelType::uint32, "bits", "0 to 8191", "turbo", 0, 8191,
      "Why the future was not used: the bits of the plane reject, seen from the other side of time.", kByTwoSided},
     {"variance", "", PixelType::float32, "luminance squared", "0 and up", "inferno", 0, 0.01,
      "Predicted variance of the pixel's luminance: the spread of its samples times the sum of their squared weights. "
@@ -61,6 +61,12 @@ constexpr RejectName kBits[] = {
     {kRejectVector, "vector", "the vector is not finite or longer than --max-motion"},
     {kRejectEmptyHistory, "empty", "no valid history at the previous position"},
     {kRejectPresent, "present", "the present pixel is not finite"},
+    {kRejectNormal, "normal", "the surface at the previous position was turned by more than --normal-angle"},
+    {kRejectId, "id", "another id lay at the previous position (--id-test)"},
+    {kRejectSpeed, "speed", "the vector there was longer or shorter by more than --speed-difference"},
+    {kRejectDirection, "direction", "the vector there led elsewhere by more than --direction-angle"},
+    {kRejectAcceleration, "acceleration", "the vector there was another (--acceleration)"},
+    {kRejectReactive, "reactive", "the reactive mask takes half of the history or more"},
 };
 
 }  // namespace

@@ -55,7 +55,7 @@ std::string layer_name(const ChannelGroup& group) { return join_path(group.path)
 /// Why a channel must not be averaged; "" if it may be.
 std::string reason_against(const ChannelIndex& index, const Chosen& c) {
   const Channel& channel = index.channel(c.member->ref);
-  const std::string passes = "; it passes through as it is";
+  const std::string passes = "; it passes through as it is, leave it out of --channels";
   if (channel.x_sampling != 1 || channel.y_sampling != 1)
     return "is subsampled, it has no value at every pixel" + passes;
   switch (const ChannelClass kind = classify(channel)) {

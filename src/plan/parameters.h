@@ -6,6 +6,8 @@
 #include "gather/gather.h"
 #include "motion/motion.h"
 #include "resolve/accumulate.h"
+#include "resolve/fallback.h"
+#include "resolve/sharpen.h"
 #include "resolve/two_sided.h"
 
 namespace varve {
@@ -16,6 +18,8 @@ struct Parameters {
   MotionParameters motion;
   RecursiveParameters recursive;
   RectifyParameters rectify;
+  FallbackParameters fallback;
+  FinishParameters finish;
   GatherParameters gather;
   TwoSidedParameters two_sided;
 };

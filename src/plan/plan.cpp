@@ -2,29 +2,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "diagnose/aov.h"
+#include "plan/check_possible.h"
 #include "plan/cost.h"
+#include "plan/describe_rectify.h"
 #include "plan/gather_plan.h"
 #include "plan/two_sided_plan.h"
+#include "plan/value.h"
 
 namespace varve {
 namespace {
-
-std::string layer_text(const Subject& subject) {
-  std::string text = subject.layer.empty() ? "the main layer" : "layer " + subject.layer;
-  if (!subject.view.empty()) text += " of view " + subject.view;
-  return text;
-}
-
-std::string short_number(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%g", value);
-  return digits;
-}
 
 std::size_t count_if(const SequenceInfo& info, bool (*has)(const Subject&)) {
   return std::size_t(std::count_if(info.first.subjects.begin(), info.first.subjects.end(), has));
@@ -32,28 +21,6 @@ std::size_t count_if(const SequenceInfo& info, bool (*has)(const Subject&)) {
 bool has_depth(const Subject& s) { return s.depth.has_value(); }
 bool only_forward(const Subject& s) { return !s.backward && s.forward; }
 bool has_motion(const Subject& s) { return s.backward || s.forward; }
-
-// What was asked for outright and cannot be done. Falling back silently would change the picture without a word.
-void check_possible(const SequenceInfo& info, const Parameters& parameters) {
-  if (parameters.recursive.disocclusion == Disocclusion::depth)
-    for (const Subject& subject : info.first.subjects)
-      if (!subject.depth)
-        throw Failure(ExitCode::inconsistent,
-                      "the depth test needs a depth, and " + layer_text(subject) +
-                          " has none; name it with --map depth=CHANNEL or --depth-file FILE, or "
-                          "give --disocclusion window");
-  if (parameters.recursive.sample_filter == SampleFilter::none || parameters.accumulator == Accumulator::gather ||
-      info.frames_with_jitter == int(info.frames.size()))
-    return;
-  const std::string known = info.frames_with_jitter == 0
-                                ? "is not known"
-                                : "is known for " + std::to_string(info.frames_with_jitter) + " of " +
-                                      std::to_string(info.frames.size()) + " frames only";
-  throw Failure(ExitCode::inconsistent, "weighting by sample positions needs the jitter of every frame, which " +
-                                            known +
-                                            "; give it with --jitter FILE or --jitter halton23:N, or give "
-                                            "--sample-filter none");
-}
 
 /// Adds the passes in running order and remembers what they need.
 class Planner {
@@ -103,7 +70,8 @@ class Planner {
     const bool depth = std::any_of(info_.first.subjects.begin(), info_.first.subjects.end(),
                                    [&](const Subject& s) { return inverts(s) && s.depth; });
     if (depth) plan_.use_depth = true;
-    plan_.passes.push_back(motion_of_both_sides(count_if(info_, has_motion) > 0, inverted > 0, depth, share(inverted)));
+    plan_.passes.push_back(motion_of_both_sides(count_if(info_, has_motion) > 0, inverted > 0, depth,
+                                                parameters_.two_sided.return_tolerance > 0, share(inverted)));
     plan_.passes.push_back(past_and_future(parameters_, output_));
   }
 
@@ -127,9 +95,13 @@ class Planner {
   }
 
   void history() {
-    constexpr std::array<const char*, 4> kFilters = {"bilinear", "16-tap Catmull-Rom", "9-tap Catmull-Rom",
-                                                     "5-tap Catmull-Rom"};
-    const std::string filter = kFilters[std::size_t(parameters_.recursive.history_filter)];
+    constexpr std::array<const char*, 7> kFilters = {
+        "bilinear", "16-tap Catmull-Rom", "9-tap Catmull-Rom", "5-tap Catmull-Rom",
+        "cubic",    "cubic B-spline",     "quintic B-spline"};
+    std::string filter = kFilters[std::size_t(parameters_.recursive.history_filter)];
+    if (parameters_.recursive.history_filter == HistoryFilter::cubic)
+      filter += " with B " + short_number(parameters_.recursive.cubic_b) + " and C " +
+                short_number(parameters_.recursive.cubic_c);
     if (stands_alone()) {
       add("history", false, "there is one frame only, so nothing came before");
       add("window test", false, "no history");
@@ -151,10 +123,62 @@ class Planner {
                     : "there is no depth");
   }
 
+  // Names of the tests with their numbers, or why there are none.
+  void rejection() {
+    const RejectParameters& r = parameters_.recursive.reject;
+    std::string tests;
+    const auto test = [&](bool asked, const std::string& text) {
+      if (asked) tests += (tests.empty() ? "" : ", ") + text;
+      return asked && info_.frames.size() > 1;
+    };
+    plan_.use_normal = test(r.normal_angle > 0, "normals by " + short_number(r.normal_angle) + " degrees");
+    plan_.use_id = test(r.id != IdTest::off, r.id == IdTest::soft ? "ids with soft edges" : "ids");
+    test(r.speed > 0, "lengths of vectors by " + short_number(r.speed) + " px");
+    test(r.direction > 0, "directions by " + short_number(r.direction) + " degrees");
+    test(r.acceleration > 0, "vectors from " + short_number(std::min(r.acceleration_low, r.acceleration)) + " to " +
+                                 short_number(r.acceleration) + " px");
+    constexpr std::array<const char*, 3> kThen = {"start over", "start over blurred", "converge faster"};
+    if (tests.empty()) return add("rejection", false, "no further test asked for");
+    if (info_.frames.size() < 2) return add("rejection", false, "no history");
+    add("rejection", true, "pixels " + std::string(kThen[std::size_t(r.on_reject)]) + " where these differ: " + tests);
+  }
+
+  void weights() {
+    if (parameters_.accumulator == Accumulator::two_sided)
+      return add("weights", false, "both sides weigh by what they have seen; masks have no say");
+    const WeightParameters& w = parameters_.recursive.weight;
+    const bool reactive = std::any_of(info_.first.subjects.begin(), info_.first.subjects.end(),
+                                      [](const Subject& s) { return s.reactive.has_value(); });
+    const bool responsive = std::any_of(info_.first.subjects.begin(), info_.first.subjects.end(),
+                                        [](const Subject& s) { return s.responsive.has_value(); });
+    const bool history = info_.frames.size() > 1;
+    plan_.use_reactive = history && reactive && w.reactive > 0;
+    plan_.use_responsive = history && responsive;
+    std::string by;
+    const auto add_if = [&](bool used, const char* text) {
+      if (used) by += std::string(by.empty() ? "" : ", ") + text;
+    };
+    add_if(w.feedback == Feedback::luma, "agreement of luma");
+    add_if(w.speed_alpha > parameters_.recursive.alpha, "speed");
+    add_if(w.anti_flicker > 0, "nearness to the wall of the box");
+    add_if(plan_.use_reactive, "the reactive mask");
+    add_if(plan_.use_responsive, "the responsive mask");
+    add_if(w.weighing == Weighing::luminance, "brightness, which darkens");
+    add_if(w.weighing == Weighing::logarithm, "logarithms, which darkens");
+    if (by.empty()) return add("weights", false, "every pixel of the present weighs the same");
+    if (!history) return add("weights", false, "no history");
+    add("weights", true, "the present weighs by " + by);
+  }
+
   void sample_weights() {
-    plan_.use_jitter = parameters_.recursive.sample_filter != SampleFilter::none;
-    add("sample weights", plan_.use_jitter,
-        plan_.use_jitter ? "the jitter is known: samples count by their distance from the pixel center"
+    const bool weigh = parameters_.recursive.sample_filter != SampleFilter::none;
+    const bool unjitter = parameters_.recursive.unjitter != Unjitter::none;
+    plan_.use_jitter = weigh || unjitter;
+    add("unjitter", unjitter,
+        unjitter ? "the jitter is known: the present is read at the pixel centers, between its samples"
+                 : "not asked for; samples stand for their pixels");
+    add("sample weights", weigh,
+        weigh ? "the jitter is known: samples count by their distance from the pixel center"
         : info_.frames_with_jitter > 0
             ? "the jitter is known, but no sample filter is asked for; --sample-filter NAME turns it on"
             : "the jitter is not known");
@@ -172,16 +196,12 @@ class Planner {
       add("rectify", false, "no history");
       return;
     }
-    const std::string edge = std::to_string(r.window), size = edge + "x" + edge;
-    const std::string space = r.space == BoxSpace::ycocg ? "YCoCg" : "RGB";
-    const std::string gamma = "gamma " + short_number(r.gamma);
-    const std::string kind = r.box == Box::minmax     ? "least and greatest"
-                             : r.box == Box::variance ? "variance, " + gamma
-                                                      : "variance, " + gamma + ", cut by least and greatest";
-    add("neighborhood box", true, "what history may say: " + kind + ", of " + size + " pixels in " + space);
-    add("rectify", true,
-        std::string(r.rule == BoxRule::clip ? "history is clipped towards the " : "history is clamped, anchor ") +
-            (r.anchor == BoxAnchor::present ? "present" : "mean") + ", which removes what is no longer there");
+    add("neighborhood box", true, "what history may say: " + describe_box(r));
+    add("rectify", true, describe_rule(r));
+    if (r.moments == WindowMoments::direct && r.window > 7)
+      plan_.notes.push_back("each pixel looks at " + std::to_string(r.window * r.window) +
+                            " neighbors, which is slow; --moments separable gives the variance box of that window at a "
+                            "cost that does not grow with it");
   }
 
   void blend() {
@@ -191,6 +211,42 @@ class Planner {
         r.alpha_rule == AlphaRule::fixed
             ? "the present weighs " + short_number(r.alpha)
             : "the present weighs 1/n for n frames seen, at least " + short_number(r.alpha));
+  }
+
+  void companions() {
+    std::size_t channels = 0;
+    for (const Subject& subject : info_.first.subjects)
+      for (const Companion& companion : subject.companions)
+        channels += std::size_t(std::count_if(companion.channels.begin(), companion.channels.end(),
+                                              [](const auto& channel) { return channel.has_value(); }));
+    const std::string alike = parameters_.accumulator == Accumulator::gather
+                                  ? "the same samples of the frames around, weighed alike"
+                                  : "the same pixels of the history, moved as far, blended alike";
+    add("companions", channels > 0,
+        channels == 0 ? "no channels go by the weights of a color; --channels names some"
+                      : std::to_string(channels) + " channels go by the weights of their color: " + alike +
+                            "; lights that add up to the color still do, and each frame reports how well");
+  }
+
+  void fallback() {
+    const FallbackParameters& f = parameters_.fallback;
+    std::string what;
+    if (f.motion_blur != MotionBlur::off && plan_.use_motion)
+      what = "what moves by " + short_number(f.blur_from) + " to " + short_number(f.blur_to) +
+             " px and more is shown blurred along its motion";
+    if (f.young_frames > 0)
+      what += (what.empty() ? "" : "; ") + std::string("the first ") + std::to_string(f.young_frames) +
+              " frames of a history are shown soft";
+    add("fallback", !what.empty(),
+        !what.empty()                      ? what + "; history is not touched"
+        : f.motion_blur != MotionBlur::off ? "no vectors"
+                                           : "the resolve is shown as it is");
+  }
+
+  void finish() {
+    const double strength = parameters_.finish.sharpen;
+    add("sharpen", strength > 0,
+        strength > 0 ? "strength " + short_number(strength) + ", of what is written only" : "not asked for");
   }
 
   void outputs() {
@@ -248,45 +304,6 @@ class Planner {
 
 }  // namespace
 
-namespace {
-
-unsigned filled_by(Accumulator accumulator) {
-  switch (accumulator) {
-    case Accumulator::recursive:
-      return kByRecursive;
-    case Accumulator::two_sided:
-      return kByTwoSided;
-    case Accumulator::gather:
-      return kByGather;
-  }
-  return 0;
-}
-
-}  // namespace
-
-std::vector<const Aov*> planned_aovs(const OutputRequest& request, Accumulator accumulator) {
-  const auto can_fill = [&](const Aov& aov) { return (aov.filled_by & filled_by(accumulator)) != 0; };
-  std::vector<const Aov*> planned;
-  for (const std::string& name : request.aovs) {
-    if (name == "all") {
-      planned.clear();
-      for (const Aov& aov : diagnostic_aovs())
-        if (can_fill(aov)) planned.push_back(&aov);
-      return planned;
-    }
-    const Aov* aov = find_aov(name);
-    if (!aov)
-      throw Failure(ExitCode::usage,
-                    "--aov " + name + ": there is no such diagnostic plane; varve help aovs lists them");
-    if (!can_fill(*aov))
-      throw Failure(ExitCode::usage, "--aov " + name +
-                                         " has nothing to show with this --accumulator; leave the plane out, or give " +
-                                         accumulators_of(*aov));
-    planned.push_back(aov);
-  }
-  return planned;
-}
-
 Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const OutputRequest& output, int threads) {
   check_possible(info, parameters);
   Plan plan;
@@ -300,10 +317,15 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
     planner.sides();
     planner.dilate();
     planner.history();
+    planner.rejection();
     planner.sample_weights();
     planner.rectify();
+    planner.weights();
     planner.blend();
   }
+  planner.companions();
+  planner.fallback();
+  planner.finish();
   planner.outputs();
   planner.channels();
   std::size_t present = 0;

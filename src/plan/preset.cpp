@@ -13,8 +13,26 @@ constexpr Preset kPresets[] = {
      "Variance clipping: sharp history along the longest vector, held to the noise of the present.",
      "accumulator=recursive dilation=longest alpha=0.1 alpha-rule=mean history-filter=catmull-rom dering=on "
      "disocclusion=window "
-     "sample-filter=none look-ahead=0 clip-discount=on return-tolerance=0 "
-     "box=variance gamma=1 window=3 rule=clip anchor=present space=rgb"},
+     "sample-filter=none look-ahead=0 return-tolerance=0.5 "
+     "box=variance gamma=1 window=3 moments=direct rule=clip anchor=present space=rgb hull-passes=64 "
+     "clip-discount=off"},
+    {"lopez", "Lopez, The Holy Trail; defaults of the public code MSAAFilter",
+     "A tenth of the present, the vector of the nearest surface, sharp history, a wide variance box around the mean.",
+     "accumulator=recursive dilation=nearest alpha=0.1 alpha-rule=fixed history-filter=catmull-rom dering=on "
+     "disocclusion=window sample-filter=none "
+     "box=variance gamma=1.5 window=3 moments=direct rule=clip anchor=center space=rgb hull-passes=64 "
+     "clip-discount=off weighing=luminance"},
+    {"crytek2", "Sousa 2011 (Crysis 2); Wronski 2014",
+     "Two jittered frames in equal parts, neighbors have no say; render with the jitter pattern two-frame.",
+     "accumulator=recursive dilation=none alpha=0.5 alpha-rule=fixed history-filter=bilinear disocclusion=window "
+     "sample-filter=none box=none moments=direct hull-passes=64 clip-discount=off speed-difference=1 "
+     "on-reject=restart"},
+    {"inside", "Pedersen 2016 (INSIDE); its public code",
+     "Present fetched at minus the jitter, history clipped to the center of the rounded box; needs the jitter.",
+     "accumulator=recursive dilation=nearest alpha=0.05 alpha-rule=fixed history-filter=bilinear disocclusion=window "
+     "unjitter=bilinear sample-filter=none "
+     "box=rounded window=3 moments=direct rule=clip anchor=center space=rgb hull-passes=64 clip-discount=off "
+     "feedback=luma feedback-low=0.88 feedback-high=0.97 motion-blur=own motion-blur-from=2 motion-blur-to=15"},
 };
 
 }  // namespace

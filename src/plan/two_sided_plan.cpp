@@ -6,9 +6,12 @@
 
 namespace varve {
 
-PlannedPass motion_of_both_sides(bool moves, bool inverted, bool with_depth, const std::string& share) {
+PlannedPass motion_of_both_sides(bool moves, bool inverted, bool with_depth, bool tested, const std::string& share) {
   if (!moves) return {"motion ahead", false, "no vectors"};
-  if (!inverted) return {"motion ahead", true, "the files have vectors to the frame before and to the frame after"};
+  if (!inverted)
+    return {"motion ahead", true,
+            std::string("the files have vectors to the frame before and to the frame after") +
+                (tested ? "; those that do not lead back are dropped" : "")};
   return {"motion ahead", true,
           "vectors of one direction are missing: those of the neighboring frame are inverted" + share +
               (with_depth ? "; the nearest depth wins, and what is hidden there restarts"
@@ -30,7 +33,7 @@ std::string blend_of_both_sides(const Parameters& parameters) {
   text += parameters.recursive.alpha_rule == AlphaRule::fixed
               ? "a frame at distance k weighs (1 - " + alpha + ")^k"
               : "frames weigh the same until a side has the weight that alpha " + alpha + " leaves to it";
-  if (parameters.two_sided.clip_discount && parameters.rectify.box != Box::none)
+  if (parameters.rectify.clip_discount && parameters.rectify.box != Box::none)
     text += "; a side that was clipped weighs less";
   return text;
 }

@@ -8,7 +8,7 @@
 namespace varve {
 
 /// Where the vectors come from that lead ahead and back. `share` names how many layers lack one direction.
-PlannedPass motion_of_both_sides(bool moves, bool inverted, bool with_depth, const std::string& share);
+PlannedPass motion_of_both_sides(bool moves, bool inverted, bool with_depth, bool tested, const std::string& share);
 
 /// How far each frame reaches, and what waiting for the future takes.
 PlannedPass past_and_future(const Parameters& parameters, const OutputRequest& output);

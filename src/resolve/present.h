@@ -19,8 +19,10 @@ inline constexpr int kPresentBorder = 3;
 struct Present {
   Plane<glm::vec4> color;                    ///< scene-linear premultiplied RGBA; 0 in the border
   std::vector<Plane<glm::vec4>> companions;  ///< planes that go with the color (Subject::companions); 0 in the border
-  Plane<float> valid;                        ///< 1 where color came finite from the file, 0 elsewhere and in the border
-  std::vector<std::uint8_t> rows_valid;      ///< per row: 1 when every pixel of it is valid
+  std::vector<std::uint8_t> companion_is_color;  ///< 1: its places are R G B A; 0: values that stand alone; all 1 if
+                                                 ///< empty
+  Plane<float> valid;                    ///< 1 where color came finite from the file, 0 elsewhere and in the border
+  std::vector<std::uint8_t> rows_valid;  ///< per row: 1 when every pixel of it is valid
   Plane<glm::vec2> motion;     ///< dilated backward motion, pixels, y down; NaN where unusable; empty: at rest
   Plane<glm::vec2> forward;    ///< the same to the next frame; empty unless asked for and in the file
   Plane<float> depth;          ///< of the surface that lent the motion, +inf for background; may be empty

@@ -120,7 +120,8 @@ Side merge(const Side& one, const Side& other, const glm::dvec4& present, double
   const auto pull = [&](const Side& side) {
     return side.total > 0 ? (side.color - middle) * side.total : glm::dvec4(0.0);
   };
-  const auto share2 = [&](const Side& side) { return side.total * side.total * side.spread; };
+  // A side that says nothing has neither a color nor a spread.
+  const auto share2 = [&](const Side& side) { return side.total > 0 ? side.total * side.total * side.spread : 0.0; };
   return {middle + (pull(one) + pull(other)) / total, total, ((share2(one) + share2(other)) + w * w) / (total * total)};
 }
 
@@ -153,21 +154,23 @@ History make_state(const Present& present, const RecursiveParameters& recursive)
   state.total = Plane<float>(w);
   state.spread = Plane<float>(w);
   state.rows_valid.resize(std::size_t(w.height()));
-  if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty()) state.depth = present.depth.clone();
+  remember_surfaces(state, present, recursive);
   return state;
 }
 
 /// Fetches, rectifies, discounts, moves on; `finish` does with each row what else is to be done.
 template <class Finish>
 AccumulateCounts walk_rows(const Present& present, const History& beyond, const RecursiveParameters& recursive,
-                           const RectifyParameters& rectify, const TwoSidedParameters& two_sided,
-                           std::optional<glm::dvec2> jitter, std::uint32_t restart_bit, const DiagnosticsWanted& wanted,
+                           const RectifyParameters& rectify, std::optional<glm::dvec2> jitter,
+                           std::uint32_t restart_bit, const DiagnosticsWanted& wanted,
                            AccumulateDiagnostics& diagnostics, History& state, Workers& workers, Isa isa,
                            Finish finish) {
   const int width = present.color.window().width();
   std::vector<std::vector<glm::vec4>> fetched(std::size_t(workers.count()), std::vector<glm::vec4>(std::size_t(width)));
   std::vector<std::size_t> bad(std::size_t(workers.count())), alone(bad);
-  const bool discounts = two_sided.clip_discount && rectify.box != Box::none;
+  const bool discounts = rectify.clip_discount && rectify.box != Box::none;
+  RectifyParameters undiscounted = rectify;
+  undiscounted.clip_discount = false;  // done here, by this accumulator's own weights
   const auto keep = [&](const AccumulateView& v, int, const RowScratch& s, int worker) {
     if (discounts)
       for (int x = 0; x < v.width; ++x)
@@ -185,8 +188,8 @@ AccumulateCounts walk_rows(const Present& present, const History& beyond, const 
     blend_into_state(v, y, s, state);
     finish(v, y, s);
   };
-  AccumulateCounts counts = visit_history(present, beyond, recursive, rectify, jitter, restart_bit, wanted, diagnostics,
-                                          keep, move_on, workers, isa);
+  AccumulateCounts counts = visit_history(present, beyond, recursive, undiscounted, jitter, restart_bit, wanted,
+                                          diagnostics, keep, move_on, workers, isa);
   for (const std::size_t n : alone) counts.restarted += n;
   for (const std::size_t n : bad) counts.vectors_bad += n;
   return counts;
@@ -203,26 +206,24 @@ int look_ahead_frames(const TwoSidedParameters& two_sided, double alpha) {
 double discounted_weight(double total, double d2_over_r) { return total / (1 + total * d2_over_r); }
 
 SideStep accumulate_side(const Present& present, const History& beyond, const RecursiveParameters& recursive,
-                         const RectifyParameters& rectify, const TwoSidedParameters& two_sided,
-                         std::optional<glm::dvec2> jitter, std::uint32_t restart_bit, const DiagnosticsWanted& wanted,
-                         Workers& workers, Isa isa) {
+                         const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, std::uint32_t restart_bit,
+                         const DiagnosticsWanted& wanted, Workers& workers, Isa isa) {
   const Window& w = present.color.window();
   SideStep step{make_state(present, recursive), {Plane<glm::vec4>(w), Plane<float>(w), Plane<float>(w), {}, {}, {}}};
   if (w.empty()) return step;
   if (wanted.reject) step.strict.reject = Plane<std::uint32_t>(w);
   AccumulateDiagnostics diagnostics;
-  step.strict.counts =
-      walk_rows(present, beyond, recursive, rectify, two_sided, jitter, restart_bit, {wanted.clip, false, false},
-                diagnostics, step.state, workers, isa,
-                [&](const AccumulateView& v, int y, const RowScratch& s) { keep_strict(v, y, s, step.strict); });
+  step.strict.counts = walk_rows(
+      present, beyond, recursive, rectify, jitter, restart_bit, {wanted.clip, false, false}, diagnostics, step.state,
+      workers, isa, [&](const AccumulateView& v, int y, const RowScratch& s) { keep_strict(v, y, s, step.strict); });
   step.strict.clip = std::move(diagnostics.clip);
   return step;
 }
 
 MergedStep accumulate_both(const Present& present, const History& beyond, const StrictSide& other,
                            const RecursiveParameters& recursive, const RectifyParameters& rectify,
-                           const TwoSidedParameters& two_sided, std::optional<glm::dvec2> jitter,
-                           std::uint32_t restart_bit, const DiagnosticsWanted& wanted, Workers& workers, Isa isa) {
+                           std::optional<glm::dvec2> jitter, std::uint32_t restart_bit, const DiagnosticsWanted& wanted,
+                           Workers& workers, Isa isa) {
   const Window& w = present.color.window();
   MergedStep step{make_state(present, recursive), {}};
   if (w.empty()) return step;
@@ -236,9 +237,9 @@ MergedStep accumulate_both(const Present& present, const History& beyond, const 
     diagnostics.count_future = Plane<float>(w);
   }
   if (wanted.reject) diagnostics.reject_future = other.reject.clone();
-  step.resolved.counts = walk_rows(
-      present, beyond, recursive, rectify, two_sided, jitter, restart_bit, wanted, diagnostics, step.state, workers,
-      isa, [&](const AccumulateView& v, int y, const RowScratch& s) { merge_row(v, y, s, other, step.resolved); });
+  step.resolved.counts =
+      walk_rows(present, beyond, recursive, rectify, jitter, restart_bit, wanted, diagnostics, step.state, workers, isa,
+                [&](const AccumulateView& v, int y, const RowScratch& s) { merge_row(v, y, s, other, step.resolved); });
   step.resolved.counts.clipped += other.counts.clipped;
   return step;
 }

@@ -153,6 +153,7 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   std::vector<int> cuts = job.cuts;
   std::sort(cuts.begin(), cuts.end());
   if (!cuts.empty()) text += " cuts=" + format_frame_list(cuts);
+  if (job.find_cuts) text += " find-cuts=on";
   text += " jitter=" + describe_jitter(job.jitter) + " convention=" + job.roles.convention;
   for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
   for (const std::string& channels : job.roles.channels) text += " channels=" + channels;

@@ -180,6 +180,7 @@ Present read_present(const Subject& subject, const FileSet& pixels, const Window
   sanitize(present, workers);
   for (const Companion& companion : subject.companions) {
     present.companions.push_back(read_companion(companion, pixels, window, workers));
+    present.companion_is_color.push_back(companion.color);
     if (companion.color && into_working_space) into_working_space->apply(present.companions.back(), workers);
   }
   sanitize_companions(present, workers);

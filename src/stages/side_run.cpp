@@ -58,11 +58,10 @@ DilatedMotion motion_to(Side side, const FrameVectors& here, const FrameVectors*
       motion =
           invert_motion(back, neighbor->depth, here.depth, parameters.recursive.depth_tolerance, std::move(motion));
   }
-  DilatedMotion dilated =
-      dilate_motion(std::move(motion), here.depth, parameters.motion.dilation, workers, std::move(marks));
+  // Before dilation: what leads nowhere may follow a neighbor that does not.
   const double tolerance = parameters.two_sided.return_tolerance;
-  if (tolerance > 0 && !back.empty()) reject_one_way_motion(dilated.motion, back, tolerance, workers);
-  return dilated;
+  if (tolerance > 0 && !back.empty()) reject_one_way_motion(motion, back, tolerance, workers);
+  return dilate_motion(std::move(motion), here.depth, parameters.motion.dilation, workers, std::move(marks));
 }
 
 std::vector<StrictSide> pass_frame(SideRun& run, SourceFrame& source, const SharedVectors& vectors,
@@ -71,8 +70,8 @@ std::vector<StrictSide> pass_frame(SideRun& run, SourceFrame& source, const Shar
   std::vector<StrictSide> strict;
   pass_subjects(run, source, vectors, p, workers,
                 [&](std::size_t, const Present& present, const History& state, std::optional<glm::dvec2> jitter) {
-                  SideStep step = accumulate_side(present, state, p.recursive, p.rectify, p.two_sided, jitter,
-                                                  kRejectCut, options.wanted, workers);
+                  SideStep step = accumulate_side(present, state, p.recursive, p.rectify, jitter, kRejectCut,
+                                                  options.wanted, workers);
                   strict.push_back(std::move(step.strict));
                   return std::move(step.state);
                 });
@@ -86,8 +85,8 @@ std::vector<Accumulated> merge_frame(SideRun& run, SourceFrame& source, const Sh
   std::vector<Accumulated> resolved;
   pass_subjects(run, source, vectors, p, workers,
                 [&](std::size_t k, const Present& present, const History& state, std::optional<glm::dvec2> jitter) {
-                  MergedStep step = accumulate_both(present, state, others[k], p.recursive, p.rectify, p.two_sided,
-                                                    jitter, kRejectCut, options.wanted, workers);
+                  MergedStep step = accumulate_both(present, state, others[k], p.recursive, p.rectify, jitter,
+                                                    kRejectCut, options.wanted, workers);
                   resolved.push_back(std::move(step.resolved));
                   return std::move(step.state);
                 });

@@ -68,8 +68,8 @@ Plane<glm::vec4> color_to_write(const Plane<glm::vec4>& resolved, const ColorCon
 /// The resolved color in the stored types of its channels.
 void add_color(FileOutput& out, OutputPart& to, const Part& part, const ResolvedSubject& resolved,
                const ColorConversion* conversion, Workers& workers) {
-  const Plane<glm::vec4> converted = color_to_write(resolved.accumulated->history.color, conversion, workers);
-  const Plane<glm::vec4>& color = converted.empty() ? resolved.accumulated->history.color : converted;
+  const Plane<glm::vec4> converted = color_to_write(resolved.color(), conversion, workers);
+  const Plane<glm::vec4>& color = converted.empty() ? resolved.color() : converted;
   const Window& window = color.window();
   std::array<RawPlane*, 4> planes{};
   for (std::size_t k = 0; k < 4; ++k)
@@ -93,9 +93,20 @@ void add_color(FileOutput& out, OutputPart& to, const Part& part, const Resolved
   out.half_overflows += overflows;
 }
 
+/// The channel as it was read; all 0 where it was not.
+void keep_pixels(RawPlane& to, const FramePixels& pixels, int part, int channel) {
+  const bool read = std::size_t(part) < pixels.planes.size() &&
+                    std::size_t(channel) < pixels.planes[std::size_t(part)].size() &&
+                    !pixels.planes[std::size_t(part)][std::size_t(channel)].empty();
+  if (read)
+    to.storage = pixels.planes[std::size_t(part)][std::size_t(channel)].storage.clone();
+  else
+    to.storage.fill(std::byte{0});
+}
+
 /// Companions of a subject that lie in part `p`, in their stored types. Where the part reaches beyond the subject's
-/// window, its channels stay as they were.
-void add_companions(FileOutput& out, OutputPart& to, const Part& part, int p, const std::vector<RawPlane>& pixels,
+/// window, its channels stay as they were where they are kept.
+void add_companions(FileOutput& out, OutputPart& to, const Part& part, int p, const FramePixels& pixels,
                     const ResolvedSubject& resolved, const ColorConversion* conversion, Workers& workers) {
   std::atomic<std::size_t> overflows = 0;
   for (std::size_t i = 0; i < resolved.subject->companions.size(); ++i) {
@@ -109,16 +120,16 @@ void add_companions(FileOutput& out, OutputPart& to, const Part& part, int p, co
     for (std::size_t k = 0; k < 4; ++k) {
       const auto& ref = companion.channels[k];
       if (!lies_here(ref)) continue;
-      const RawPlane& stored = pixels[std::size_t(ref->channel)];
-      RawPlane& plane = out.planes.emplace_back(make_raw_plane(stored.type, part.data_window));
-      if (common != part.data_window) plane.storage = stored.storage.clone();
-      const std::size_t left = std::size_t(common.x0 - part.data_window.x0) * bytes_per_pixel(stored.type);
+      const Channel& channel = part.channels[std::size_t(ref->channel)];
+      RawPlane& plane = out.planes.emplace_back(make_raw_plane(channel.type, part.data_window));
+      if (common != part.data_window) keep_pixels(plane, pixels, p, ref->channel);
+      const std::size_t left = std::size_t(common.x0 - part.data_window.x0) * bytes_per_pixel(channel.type);
       workers.for_rows(common.y0, common.y1, [&](int y) {
         std::vector<float> row(static_cast<std::size_t>(common.width()));
         for (int x = common.x0; x < common.x1; ++x) row[std::size_t(x - common.x0)] = values.at(x, y)[int(k)];
-        overflows += store_row(stored.type, row.data(), plane.row(y - part.data_window.y0) + left, common.width());
+        overflows += store_row(channel.type, row.data(), plane.row(y - part.data_window.y0) + left, common.width());
       });
-      to.channels.push_back({part.channels[std::size_t(ref->channel)], &plane});
+      to.channels.push_back({channel, &plane});
     }
   }
   out.half_overflows += overflows;
@@ -165,7 +176,7 @@ FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
     to.source_part = p;
     std::set<std::string> stale;
     for (const ResolvedSubject& resolved : subjects) {
-      add_companions(out, to, part, p, pixels.planes[std::size_t(p)], resolved, out_of_working_space, workers);
+      add_companions(out, to, part, p, pixels, resolved, out_of_working_space, workers);
       if (part_of(*resolved.subject) != p) continue;
       stale.merge(stale_diagnostics(*resolved.subject));
       add_color(out, to, part, resolved, out_of_working_space, workers);

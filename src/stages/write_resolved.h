@@ -19,7 +19,12 @@ struct ResolvedSubject {
   const Subject* subject = nullptr;
   const Present* present = nullptr;
   const Accumulated* accumulated = nullptr;
-  const History* prediction = nullptr;  ///< only where the plane `prediction` is asked for
+  const History* prediction = nullptr;         ///< only where the plane `prediction` is asked for
+  const Plane<glm::vec4>* finished = nullptr;  ///< what is written, where that is not what the history keeps
+
+  const Plane<glm::vec4>& color() const {
+    return finished && !finished->empty() ? *finished : accumulated->history.color;
+  }
 };
 
 /// Parts ready for write_frame, and the planes they point to.

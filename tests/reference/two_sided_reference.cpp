@@ -29,13 +29,17 @@ double variance_around(const Present& present, int x, int y) {
 }  // namespace
 
 SidePixel side_pixel(const Present& present, const History& beyond, const RecursiveParameters& p,
-                     const RectifyParameters& rectify, const TwoSidedParameters& two_sided,
-                     std::optional<glm::dvec2> jitter, unsigned restart_bit, int x, int y) {
+                     const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
+                     int y) {
   SidePixel out;
   Color fetched{};
-  out.strict = rectified_history(present, beyond, p, rectify, jitter, restart_bit, x, y, fetched);
+  RectifyParameters undiscounted = rectify;
+  undiscounted.clip_discount = false;
+  double trust = 0;
+  out.strict = rectified_history(present, beyond, p, undiscounted, jitter, restart_bit, x, y, fetched, trust);
   Pixel& side = out.strict;
-  if (side.total > 0 && two_sided.clip_discount) {
+  side.total *= trust;
+  if (side.total > 0 && rectify.clip_discount) {
     double d2 = 0;
     for (std::size_t k = 0; k < 3; ++k) d2 += (side.color[k] - fetched[k]) * (side.color[k] - fetched[k]);
     if (d2 > 0) side.total /= 1 + side.total * d2 / variance_around(present, x, y);

@@ -13,8 +13,8 @@ struct SidePixel {
   double state_total = 0, state_spread = 0;
 };
 SidePixel side_pixel(const Present& present, const History& beyond, const RecursiveParameters& recursive,
-                     const RectifyParameters& rectify, const TwoSidedParameters& two_sided,
-                     std::optional<glm::dvec2> jitter, unsigned restart_bit, int x, int y);
+                     const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
+                     int y);
 
 /// What accumulate_both() must give there, from the two strict sides.
 Pixel merged_pixel(const Present& present, const Pixel& past, const Pixel& future, const RecursiveParameters& recursive,

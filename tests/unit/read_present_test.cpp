@@ -43,8 +43,9 @@ struct Frame {
     Workers workers(2);
     ForwardMemory memory;
     std::size_t bad = 0;
-    return read_present(subject, files, w, w, {{}, false, false, wanted, wanted, wanted, wanted}, nullptr, memory, bad,
-                        workers);
+    const ReadOptions options{
+        .motion = {}, .use_id = wanted, .use_normal = wanted, .use_reactive = wanted, .use_responsive = wanted};
+    return read_present(subject, files, w, w, options, nullptr, memory, bad, workers);
   }
 };
 

@@ -24,6 +24,8 @@ struct Settings {
   RectifyParameters rectify;
   TwoSidedParameters two_sided;
   std::optional<glm::dvec2> jitter;
+
+  Settings() { rectify.clip_discount = true; }
 };
 
 Settings plain_sums(double alpha = 0.1) {
@@ -41,13 +43,12 @@ struct Frame {
 };
 
 SideStep side(const Present& present, const History& beyond, const Settings& s, Workers& workers) {
-  return accumulate_side(present, beyond, s.recursive, s.rectify, s.two_sided, s.jitter, kRejectCut, kAll, workers);
+  return accumulate_side(present, beyond, s.recursive, s.rectify, s.jitter, kRejectCut, kAll, workers);
 }
 
 MergedStep both(const Present& present, const History& beyond, const StrictSide& other, const Settings& s,
                 Workers& workers) {
-  return accumulate_both(present, beyond, other, s.recursive, s.rectify, s.two_sided, s.jitter, kRejectCut, kAll,
-                         workers);
+  return accumulate_both(present, beyond, other, s.recursive, s.rectify, s.jitter, kRejectCut, kAll, workers);
 }
 
 /// The whole sequence at once: back through the future, then on through the past.
@@ -94,7 +95,7 @@ std::vector<Settings> many_settings() {
           s.recursive.history_filter = filter;
           s.recursive.alpha_rule = rule;
           s.rectify.box = box;
-          s.two_sided.clip_discount = discount;
+          s.rectify.clip_discount = discount;
           all.push_back(s);
         }
   Settings samples;
@@ -105,6 +106,19 @@ std::vector<Settings> many_settings() {
   depth.recursive.disocclusion = Disocclusion::depth;
   depth.rectify.space = BoxSpace::ycocg;
   all.push_back(depth);
+  // Tests between the steps: some of the four history pixels stand in for the others, and trust is between 0 and 1.
+  Settings tests = depth;
+  tests.recursive.reject.depth_slope = 1;
+  tests.recursive.reject.acceleration_low = 1;
+  tests.recursive.reject.acceleration = 6;
+  tests.recursive.reject.speed = 5;
+  all.push_back(tests);
+  // Shapes that the row kernel has no code for.
+  for (const Box box : {Box::rounded, Box::pca, Box::ellipsoid}) {
+    Settings shape;
+    shape.rectify.box = box;
+    all.push_back(shape);
+  }
   return all;
 }
 
@@ -117,7 +131,7 @@ void expect_twin(const Present& present, const History& beyond, const StrictSide
   for (int y = w.y0; y < w.y1; ++y)
     for (int x = w.x0; x < w.x1; ++x) {
       const reference::SidePixel slow =
-          reference::side_pixel(present, beyond, s.recursive, s.rectify, s.two_sided, s.jitter, kRejectCut, x, y);
+          reference::side_pixel(present, beyond, s.recursive, s.rectify, s.jitter, kRejectCut, x, y);
       reference::Pixel other;
       for (std::size_t k = 0; k < 4; ++k) other.color[k] = double(future.color.at(x, y)[int(k)]);
       other.total = double(future.total.at(x, y));
@@ -309,7 +323,7 @@ TEST(TwoSided, ASideThatHadToBeClippedLosesItsWeight) {
     return sum / (3 * 60 * 60);
   };
   Settings s, plain;
-  plain.two_sided.clip_discount = false;
+  plain.rectify.clip_discount = false;
   const History past = history(0);
   const StrictSide nothing = side(present, {}, s, workers).strict;
   const double alone = error(both(present, past, nothing, s, workers).resolved);
@@ -417,7 +431,7 @@ TEST(TwoSided, ThreadsAndProcessorsDoNotChangeAByte) {
   const History h = side(present, {}, s, one).state;
   const StrictSide future = side(present, h, s, one).strict;
   const auto run = [&](Workers& workers, Isa isa) {
-    return accumulate_both(present, h, future, s.recursive, s.rectify, s.two_sided, {}, 1, kAll, workers, isa).resolved;
+    return accumulate_both(present, h, future, s.recursive, s.rectify, {}, 1, kAll, workers, isa).resolved;
   };
   const Accumulated a = run(one, Isa::baseline);
   EXPECT_TRUE(same_bits(a.history.color, run(many, Isa::baseline).history.color));
