@@ -9,6 +9,24 @@ namespace varve {
 namespace {
 
 constexpr Preset kPresets[] = {
+    {"draft", "Varve", "Three frames on each side, four cells in a pixel, light as it is: a first look.",
+     "accumulator=gather reach=3 cells=2 sigma=0.2 gain=off change-limit=0 firefly-limit=0 sample-filter=none "
+     "return-tolerance=0"},
+    {"standard", "Varve", "Eight frames on each side, sixteen cells, light that changes is followed.",
+     "accumulator=gather reach=8 cells=4 sigma=0.12 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
+     "sample-filter=none return-tolerance=0"},
+    {"high", "Varve", "Sixteen frames on each side: for final frames.",
+     "accumulator=gather reach=16 cells=4 sigma=0.12 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
+     "sample-filter=none return-tolerance=0.5"},
+    {"reference", "Varve", "Twenty-four frames on each side, thirty-six cells: as good as it gets.",
+     "accumulator=gather reach=24 cells=6 sigma=0.1 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
+     "sample-filter=none return-tolerance=0.5"},
+    {"two-sided", "Fraser and Potter 1969; Rauch, Tung and Striebel 1965",
+     "Past and future histories merged: for frames without ids, depth or jitter that the gather could use.",
+     "accumulator=two-sided dilation=longest alpha=0.1 alpha-rule=fixed history-filter=catmull-rom dering=on "
+     "disocclusion=window sample-filter=none look-ahead=8 return-tolerance=0.5 "
+     "box=variance gamma=1 window=3 moments=direct rule=clip anchor=present space=rgb hull-passes=64 "
+     "clip-discount=on"},
     {"salvi", "Salvi 2016, An Excursion in Temporal Supersampling",
      "Variance clipping: sharp history along the longest vector, held to the noise of the present.",
      "accumulator=recursive dilation=longest alpha=0.1 alpha-rule=mean history-filter=catmull-rom dering=on "
