@@ -45,6 +45,19 @@ Value<Settings> scene_name() {
   return value;
 }
 
+Value<Settings> pattern_name() {
+  Value<Settings> value{[](Settings& s, std::string_view text) {
+                          s.jitter.pattern = text;
+                          return !text.empty();
+                        },
+                        nullptr,
+                        "a pattern such as helix4 or halton23:16; `varve help patterns` lists them",
+                        {}};
+  for (const JitterPattern& row : jitter_patterns())
+    value.choices.push_back({std::string(row.name), std::string(row.meaning)});
+  return value;
+}
+
 Value<Settings> help_topic() {
   return {[](Settings& s, std::string_view text) {
             s.topic = text;
@@ -151,6 +164,24 @@ std::vector<Command> command_table() {
         {"varve synth panes -o panes --layers", "Each layer beside the composite."},
         {"varve synth fence -o fence --samples 4 --size 640x360",
          "Four parts with jitters of their own in each file."}}},
+      {"jitter",
+       kJitter,
+       "PATTERN",
+       "list where in its pixel each frame is to be sampled",
+       "Prints the sample positions of a pattern, one for each frame, for a renderer to use and for `varve resolve "
+       "--jitter FILE` to read back. PATTERN may have a length behind a colon, after which it repeats.\n"
+       "The numbers are sample position minus pixel center, in pixels, x right, y down. Renderers want other signs, "
+       "axes "
+       "and units: --convention lists those. The motion vectors of the renderer must not contain the jitter.\n"
+       "The mean of a pattern, its centroid, shifts the resolved picture; the comment lines tell it and --centered "
+       "takes "
+       "it out.",
+       pattern_name(),
+       run_jitter,
+       true,
+       {{"varve jitter halton23:16 --count 100 -o jitter.csv", "Positions of frames 1-100; read back as they are."},
+        {"varve jitter halton23 --count 16 --convention cycles --size 1920x1080 --format json",
+         "The camera shifts that make Blender sample there."}}},
       {"help", kHelp, "[TOPIC]", "explain a command or a topic",
        "TOPIC is a command, or one of " + topic_names() + ". Without it the program itself is explained.", help_topic(),
        run_help},

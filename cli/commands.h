@@ -15,6 +15,7 @@ int run_resolve(Settings& settings);
 int run_probe(Settings& settings);
 int run_compare(Settings& settings);
 int run_synth(Settings& settings);
+int run_jitter(Settings& settings);
 int run_measure(Settings& settings);
 int run_floor(Settings& settings);
 int run_help(Settings& settings);

@@ -1,5 +1,7 @@
 // The program: runs the command line and turns whatever goes wrong into one sentence and an exit code.
 #include <malloc.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -28,10 +30,19 @@ int fail(varve::ExitCode code, const std::string& sentence) {
   return int(code);
 }
 
-/// A full disk shows only here. A reader that went away wanted no more: a quiet end.
+bool reader_is_gone() {
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+}
+
+/// A full disk shows only here, and what was longer than the buffer has met it before: of that only the mark of the
+/// stream is left. A reader that went away wanted no more: a quiet end.
 int flush_output(int code) {
-  if (std::fflush(stdout) == 0 || errno == EPIPE) return code;
-  return fail(varve::ExitCode::output, std::string("standard output cannot be written: ") + std::strerror(errno));
+  const bool failed_before = std::ferror(stdout) != 0, failed_now = std::fflush(stdout) != 0;
+  const int reason = failed_now ? errno : 0;
+  if ((!failed_before && !failed_now) || reason == EPIPE || reader_is_gone()) return code;
+  return fail(varve::ExitCode::output, std::string("standard output cannot be written: ") +
+                                           (failed_now ? std::strerror(reason) : "it did not take all of the text"));
 }
 
 }  // namespace

@@ -155,7 +155,9 @@ std::string command_page(const Command& command) {
   else if (command.bit == kMeasure)
     out += topic_sections({"presets", "metrics", "conventions", "exit-codes"});
   else if (command.bit == kSynth)
-    out += topic_sections({"scenes", "exit-codes"});
+    out += topic_sections({"scenes", "patterns", "exit-codes"});
+  else if (command.bit == kJitter)
+    out += topic_sections({"patterns", "jitter-conventions", "exit-codes"});
   else
     out += topic_sections({"conventions", "exit-codes"});
   return out + examples_section(command.examples) + see_also(page);

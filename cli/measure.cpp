@@ -31,6 +31,7 @@ MeasureJob finished_job(Settings& settings) {
   job.motion = settings.motion_files;
   for (const auto& [commands, word] : settings.given)
     if (commands & kFloor) job.resolve_words.push_back(word);
+  job.skip_impossible = settings.presets.empty();  // all presets were asked for, not each of them
   if (settings.presets.empty())
     for (const Preset& preset : presets()) settings.presets.emplace_back(preset.name);
   job.settings = make_settings(settings.presets, settings.sweeps, settings.singles);
@@ -65,6 +66,9 @@ MeasureEvents events_of(const Settings& settings) {
   MeasureEvents events;
   events.should_stop = [] { return stop_signal() != 0; };
   if (settings.quiet) return events;
+  events.warning = [](const std::string& sentence) {
+    std::fputs(("varve: warning: " + sentence + "\n").c_str(), stderr);
+  };
   const bool terminal = isatty(STDERR_FILENO) == 1;
   events.step = [terminal](const std::string& what, int done, int total) {
     if (terminal)

@@ -21,7 +21,8 @@ enum CommandBit : unsigned {
   kCompare = 16,
   kSynth = 32,
   kMeasure = 64,
-  kFloor = 128
+  kFloor = 128,
+  kJitter = 256
 };
 
 /// What completion offers for a value that is not one of a few words.

@@ -10,8 +10,9 @@ namespace varve::cli {
 Value<Settings> map_value() {
   return {[](Settings& s, std::string_view text) {
             const std::size_t equals = text.find('=');
-            constexpr std::array<std::string_view, 9> roles = {"R",        "G",        "B",         "A",        "depth",
-                                                               "motion.x", "motion.y", "forward.x", "forward.y"};
+            constexpr std::array<std::string_view, 15> roles = {
+                "R",         "G",  "B",        "A",        "depth",    "motion.x", "motion.y",  "forward.x",
+                "forward.y", "id", "normal.x", "normal.y", "normal.z", "reactive", "responsive"};
             if (equals == std::string_view::npos || equals + 1 == text.size()) return false;
             const std::string_view role = text.substr(0, equals);
             if (std::ranges::find(roles, role) == roles.end()) return false;
@@ -19,7 +20,8 @@ Value<Settings> map_value() {
             return true;
           },
           nullptr,
-          "role=channel with one of the roles R, G, B, A, depth, motion.x, motion.y, forward.x, forward.y",
+          "role=channel with one of the roles R, G, B, A, depth, motion.x, motion.y, forward.x, forward.y, "
+          "id, normal.x, normal.y, normal.z, reactive, responsive",
           {}};
 }
 
@@ -70,15 +72,14 @@ Value<Settings> convention_value() {
   return value;
 }
 
-Value<Settings> size_value() {
-  return {[](Settings& s, std::string_view text) {
+Value<Settings> size_value(std::function<void(Settings&, int width, int height)> set) {
+  return {[set](Settings& s, std::string_view text) {
             const std::size_t x = std::min(text.find('x'), text.size());
             const auto width = parse_number<int>(text.substr(0, x));
             const auto height = parse_number<int>(text.substr(std::min(x + 1, text.size())));
             constexpr int kLongest = 16384;
             if (!width || !height || *width < 1 || *height < 1 || *width > kLongest || *height > kLongest) return false;
-            s.synth.width = *width;
-            s.synth.height = *height;
+            set(s, *width, *height);
             return true;
           },
           nullptr,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -94,7 +95,7 @@ Value<Settings> convention_value();
 /// Sets all parameters.
 Value<Settings> preset_value();
 /// 320x180.
-Value<Settings> size_value();
+Value<Settings> size_value(std::function<void(Settings&, int width, int height)> set);
 /// Numbers of --yardsticks.
 Value<Settings> yardsticks_value();
 /// A parameter of the resolve.

@@ -1,5 +1,6 @@
 // THE table of options. Names, ranges and texts of the parameters come from knobs().
 #include "compare_options.h"
+#include "jitter_options.h"
 #include "measure_options.h"
 #include "option_values.h"
 #include "synth_options.h"
@@ -9,9 +10,17 @@ namespace {
 
 constexpr unsigned kInput = kResolve | kProbe | kMeasure | kFloor, kEach = kInput | kCompare;
 
+constexpr Word<ChannelWeights> kChannelWeights[] = {
+    {"beauty", ChannelWeights::beauty, "those of the color: lights that add up to it still do"},
+    {"own", ChannelWeights::own, "its own neighborhood decides, as if it were the color; motion and depth are shared"},
+};
 constexpr Word<bool> kKeeps[] = {
     {"all", true, "other channels and parts pass through, bit for bit"},
     {"none", false, "only what was resolved is written"},
+};
+constexpr Word<bool> kFindCuts[] = {
+    {"on", true, "history starts anew where a frame does not follow from the one before"},
+    {"off", false, "only --cuts and gaps in the frame numbers count"},
 };
 constexpr Word<std::optional<Compression>> kCompressions[] = {
     {"keep", std::nullopt, "as the input; ZIP where that is lossy"},
@@ -65,6 +74,12 @@ void add_file_options(std::vector<Option>& rows) {
        number([](auto& s) -> auto& { return s.job.preroll; }, {0, 100000})});
   add({"cuts", 0, "LIST", kEach & ~kProbe, kBasic, group, "First frames of new shots; history does not cross them.",
        frames([](auto& s) -> auto& { return s.job.cuts; })});
+  add({"find-cuts", 0, "WORD", kResolve, kAdvanced, group,
+       "Whether cuts are looked for in the pixels of the main layer, too, and told with the evidence. Moves of the "
+       "camera "
+       "and changes of light are none. With --resume, frames behind a cut that was found are done again.",
+       word(
+           [](auto& s) -> auto& { return s.job.find_cuts; }, kFindCuts)});
   add({"resume", 0, "", kResolve, kBasic, group,
        "Skip frames whose output is complete and was made with the same parameters from the same frames. Frames that "
        "were "
@@ -92,6 +107,19 @@ void add_channel_options(std::vector<Option>& rows) {
            },
            "all, or names of layers with commas between")})
       .repeats = true;
+  add({"channels", 0, "LIST", kResolve | kProbe, kAdvanced, group,
+       "Further layers and channels to resolve, such as lights, reflections, occlusion and shadows. Names by their end "
+       "will do; * stands for any characters and ? for one. Vectors, depths, normals and ids are never averaged.",
+       list(
+           [](Settings& s, const std::string& name) {
+             s.job.roles.channels.push_back(name);
+             return true;
+           },
+           "names of layers or channels with commas between")})
+      .repeats = true;
+  add({"channel-weights", 0, "WHICH", kResolve | kProbe, kAdvanced, group, "By which weights --channels are resolved.",
+       word(
+           [](auto& s) -> auto& { return s.job.roles.channel_weights; }, kChannelWeights)});
   add({"map", 0, "ROLE=CHANNEL", kInput, kAdvanced, group,
        "Name the channel of a role, where its name does not tell. motion leads to the previous frame, forward to the "
        "next.",
@@ -106,10 +134,11 @@ void add_channel_options(std::vector<Option>& rows) {
       .completes = Completes::files;
   add({"jitter", 0, "SOURCE", kInput, kAdvanced, group,
        "Where in its pixel each frame was sampled. auto reads the header; a CSV file has the columns frame,jx,jy, "
-       "sample "
-       "position minus pixel center in pixels, y down.",
+       "sample position minus pixel center in pixels, y down, as `varve jitter` writes it; patterns are those of "
+       "`varve "
+       "help patterns`, with a seed of 0 and a direction of 0.",
        text(
-           [](auto& s) -> auto& { return s.job.jitter; }, "auto, none, a CSV file or a sequence such as halton23:16")})
+           [](auto& s) -> auto& { return s.job.jitter; }, "auto, none, a CSV file or a pattern such as halton23:16")})
       .completes = Completes::files;
 }
 
@@ -190,6 +219,12 @@ void add_diagnostic_options(std::vector<Option>& rows) {
        text(
            [](auto& s) -> auto& { return s.job.preview_folder; }, "a folder")})
       .completes = Completes::folders;
+  add({"spill", 0, "FOLDER", kResolve, kAdvanced, group,
+       "With --accumulator two-sided: keep what the future says of a block in a file in this folder instead of in "
+       "memory. The file has no name and is gone when the program ends, however it ends.",
+       text(
+           [](auto& s) -> auto& { return s.job.request.spill_folder; }, "a folder")})
+      .completes = Completes::folders;
   add({"report", 0, "FILE", kResolve, kAdvanced, group,
        "Write a JSON file with one row for each frame: times in seconds and counts of pixels.",
        text(
@@ -262,6 +297,7 @@ std::vector<Option> option_table() {
   std::vector<Option> rows;
   add_file_options(rows);
   add_synth_options(rows);
+  add_jitter_options(rows);
   add_channel_options(rows);
   add_parameter_options(rows);
   add_motion_options(rows);

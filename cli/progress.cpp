@@ -3,9 +3,12 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
+#include "diagnose/aov.h"
 #include "json.h"
 
 namespace varve::cli {
@@ -29,8 +32,22 @@ int terminal_columns() {
 
 std::string count_text(std::size_t count, const char* what) { return ", " + std::to_string(count) + " " + what; }
 
+// Lights of which a part only was named say nothing by their sum.
+bool add_up(const LightSum& lights) { return lights.pixels > 0 && lights.adding_up == lights.pixels; }
+
+double residual(const LightSum& lights, double value) {
+  return add_up(lights) ? value : std::numeric_limits<double>::quiet_NaN();  // null in JSON
+}
+
+std::string residual_text(const LightSum& lights) {
+  char text[120];
+  std::snprintf(text, sizeof text, ", lights add up to the color within %.2g (%.2g before)", lights.resolved,
+                lights.input);
+  return text;
+}
+
 JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
-  return line.number("frame", report.frame)
+  line.number("frame", report.frame)
       .text("path", report.path)
       .flag("written", report.written)
       .flag("skipped", report.skipped)
@@ -43,7 +60,17 @@ JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
       .number("restarted", double(report.restarted))
       .number("clipped", double(report.clipped))
       .number("half_overflows", double(report.half_overflows))
+      .number("companions_not_finite", double(report.companions_not_finite))
+      .number("light_pixels", double(report.lights.pixels))
+      .number("light_pixels_adding_up", double(report.lights.adding_up))
+      .number("light_residual_input", residual(report.lights, report.lights.input))
+      .number("light_residual", residual(report.lights, report.lights.resolved))
       .text("restart", report.restart);
+  // Why history was not used, pixel by pixel: one count for each bit of the plane `reject`.
+  for (const RejectName& reason : reject_bits())
+    line.number("rejected_" + std::string(reason.name),
+                double(report.rejected[std::size_t(std::countr_zero(reason.bit))]));
+  return line;
 }
 
 }  // namespace
@@ -68,6 +95,9 @@ std::string frame_line(const FrameReport& report, int done, int total) {
     if (!report.written) line += ", for the history only";
     if (!report.restart.empty()) line += ", restart (" + report.restart + ")";
     if (report.not_finite > 0) line += count_text(report.not_finite, "pixels repaired that were not finite");
+    if (report.companions_not_finite > 0)
+      line += count_text(report.companions_not_finite, "values of --channels repaired that were not finite");
+    if (add_up(report.lights)) line += residual_text(report.lights);
     if (report.vectors_bad > 0) line += count_text(report.vectors_bad, "unusable vectors");
     if (report.half_overflows > 0) line += count_text(report.half_overflows, "values beyond half held at 65504");
   }

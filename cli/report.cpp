@@ -32,7 +32,7 @@ void write_file(const std::string& path, const std::string& text) {
   }
   if (good) return;
   std::remove(temporary.c_str());
-  throw Failure(ExitCode::output, "the report " + path + " cannot be written: " + std::strerror(reason));
+  throw Failure(ExitCode::output, path + " cannot be written: " + std::strerror(reason));
 }
 
 }  // namespace varve::cli

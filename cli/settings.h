@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compare_sequence.h"
+#include "exr/jitter_list.h"
 #include "measure_sequence.h"
 #include "resolve_sequence.h"
 #include "synth_sequence.h"
@@ -36,6 +37,10 @@ struct Settings {
   std::string plot_file;
   /// Every option as it was given, "--name=value": what measure hands on to the runs of resolve.
   std::vector<std::pair<unsigned, std::string>> given;  ///< with the commands that know it
+
+  JitterListJob jitter;
+  std::string jitter_file;  ///< empty: standard output
+  bool jitter_json = false;
 
   std::string topic;  ///< what help is asked about; empty: the program
   bool all = false, man = false;

@@ -32,7 +32,8 @@ void add_synth_options(std::vector<Option>& rows) {
       .completes = Completes::folders;
   add(files, {"frames", 'f', "LIST", 0, kBasic, "", "Frames to render; without it all frames of the scene, 1-48.",
               frames([](auto& s) -> auto& { return s.synth.frames; })});
-  add(files, {"size", 0, "WxH", 0, kBasic, "", "Pixels of the picture; without it 320x180.", size_value()});
+  add(files, {"size", 0, "WxH", 0, kBasic, "", "Pixels of the picture; without it 320x180.",
+              size_value([](Settings& s, int width, int height) { s.synth.width = width, s.synth.height = height; })});
   add(files, {"type", 0, "TYPE", 0, kAdvanced, "", "Pixel type of color and alpha of the samples; all else is float.",
               word(
                   [](auto& s) -> auto& { return s.synth.type; }, kColorTypes)});
@@ -45,10 +46,11 @@ void add_synth_options(std::vector<Option>& rows) {
                 flag([](auto& s) -> auto& { return s.synth.layers; })});
   add(samples,
       {"jitter", 0, "SOURCE", 0, kAdvanced, "",
-       "Where in its pixel each frame is sampled. The length of a sequence counts frames. A CSV file has the "
+       "Where in its pixel each frame is sampled. The length of a pattern counts frames; see `varve help patterns`. A "
+       "CSV file has the "
        "columns frame,jx,jy, sample position minus pixel center in pixels, y down.",
        text(
-           [](auto& s) -> auto& { return s.synth.jitter; }, "none, a CSV file or a sequence such as halton23:16")})
+           [](auto& s) -> auto& { return s.synth.jitter; }, "none, a CSV file or a pattern such as halton23:16")})
       .completes = Completes::files;
   add(samples,
       {"noise", 0, "SIGMA", 0, kBasic, "",

@@ -1,8 +1,13 @@
 // The tables behind `varve help TOPIC` and the manual sections.
+#include <algorithm>
+
 #include "base/error.h"
 #include "diagnose/aov.h"
 #include "diagnose/metric.h"
+#include "exr/jitter_convention.h"
 #include "help.h"
+#include "plan/feature.h"
+#include "plan/knob.h"
 #include "plan/preset.h"
 #include "synth/scenes.h"
 
@@ -39,10 +44,45 @@ std::string encoding_text(std::string_view x, std::string_view y, const MotionEn
 }
 
 Topic presets_topic() {
-  Topic topic{"presets", "PRESETS", "Sets of parameters for --preset. Options given by name override them.", {}};
+  Topic topic{"presets",
+              "PRESETS",
+              "Sets of parameters for --preset, then every parameter with its value in each of them. Options given by "
+              "name override them.",
+              {}};
   for (const Preset& preset : presets())
-    topic.rows.emplace_back(preset.name, std::string(preset.description) + " Source: " + std::string(preset.source) +
-                                             ". Values: " + std::string(preset.values) + ".");
+    topic.rows.emplace_back(preset.name,
+                            std::string(preset.description) + " Source: " + std::string(preset.source) + ".");
+  for (const Knob& knob : knobs()) {
+    // Presets of one value together: "catmull-rom: salvi, lopez; bilinear: crytek2, inside".
+    std::vector<std::pair<std::string, std::string>> values;
+    for (const Preset& preset : presets()) {
+      const std::string value = knob.value.show(preset_parameters(preset));
+      const auto found = std::ranges::find(values, value, [](const auto& entry) { return entry.first; });
+      if (found == values.end())
+        values.emplace_back(value, preset.name);
+      else
+        found->second.append(", ").append(preset.name);
+    }
+    std::string text;
+    for (const auto& [value, names] : values)
+      text += (text.empty() ? "" : "; ") + value + (values.size() == 1 ? " in all" : ": " + names);
+    topic.rows.emplace_back("--" + std::string(knob.name), text + ".");
+  }
+  return topic;
+}
+
+Topic features_topic() {
+  Topic topic{"features",
+              "FEATURES",
+              "What the sources of temporal supersampling describe, by number, and how it is reached here. Sources: S "
+              "Salvi 2016, L Lopez, Y Yang 2009, W Wronski 2014, P Pedersen 2016. Systems first, then techniques, then "
+              "what goes beyond them.",
+              {}};
+  for (const Feature& feature : features())
+    topic.rows.emplace_back(feature_name(feature),
+                            std::string(feature.what) +
+                                (feature.sources.empty() ? "" : " (" + std::string(feature.sources) + ")") + ". " +
+                                std::string(reach_name(feature.reach)) + ": " + std::string(feature.how) + ".");
   return topic;
 }
 
@@ -54,7 +94,8 @@ Topic aovs_topic() {
       {}};
   for (const Aov& aov : diagnostic_aovs())
     topic.rows.emplace_back(aov.name, std::string(aov.meaning) + " Unit: " + std::string(aov.unit) +
-                                          ". Range: " + std::string(aov.range) + ".");
+                                          ". Range: " + std::string(aov.range) + "." +
+                                          (aov.filled_by == kByAll ? "" : " Only of " + accumulators_of(aov) + "."));
   return topic;
 }
 
@@ -106,6 +147,34 @@ Topic scenes_topic() {
   return topic;
 }
 
+Topic patterns_topic() {
+  Topic topic{"patterns",
+              "JITTER PATTERNS",
+              "Sample positions for `varve jitter` and for --jitter PATTERN:N. Patterns without a length of their own "
+              "take N points, 16 without it.",
+              {}};
+  for (const JitterPattern& row : jitter_patterns())
+    topic.rows.emplace_back(row.name, std::string(row.meaning) + ". " +
+                                          (row.length == 0   ? "Up to " + std::to_string(row.most) + " points"
+                                           : row.length == 1 ? std::string("1 point")
+                                                             : std::to_string(row.length) + " points") +
+                                          ". Source: " + std::string(row.source) + ".");
+  return topic;
+}
+
+Topic jitter_conventions_topic() {
+  Topic topic{
+      "jitter-conventions",
+      "JITTER CONVENTIONS",
+      "What a renderer must be told so that it samples at jx, jy, for `varve jitter --convention`. Evidence tells "
+      "how far a row can be trusted; `varve probe` cannot see a wrong one.",
+      {}};
+  for (const JitterConvention& row : jitter_conventions())
+    topic.rows.emplace_back(row.name, std::string(row.meaning) + " Columns: " + std::string(row.x) + ", " +
+                                          std::string(row.y) + ". Evidence: " + std::string(row.evidence) + ".");
+  return topic;
+}
+
 Topic exit_topic() {
   Topic topic{"exit-codes", "EXIT STATUS", "", {}};
   for (const ExitMeaning& row : kExitMeanings)
@@ -116,8 +185,8 @@ Topic exit_topic() {
 }  // namespace
 
 std::vector<Topic> topics() {
-  return {presets_topic(), aovs_topic(),   rejection_topic(), conventions_topic(),
-          metrics_topic(), scenes_topic(), exit_topic()};
+  return {presets_topic(), features_topic(), aovs_topic(),     rejection_topic(),          conventions_topic(),
+          metrics_topic(), scenes_topic(),   patterns_topic(), jitter_conventions_topic(), exit_topic()};
 }
 
 std::string topic_names() {

@@ -12,7 +12,8 @@ namespace {
 
 std::vector<OutputPart> parts_of(const FrameHeaders& headers, const FramePixels& pixels) {
   std::set<int> decoded;
-  for (const Subject& subject : headers.subjects) decoded.insert(part_of(subject));
+  for (const Subject& subject : headers.subjects)
+    for (const int part : varve::parts_of(subject)) decoded.insert(part);
   std::vector<OutputPart> parts;
   const FileHeader& source = headers.files.front();
   for (int p = 0; p < int(source.parts.size()); ++p) {

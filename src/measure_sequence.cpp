@@ -196,15 +196,29 @@ void conclude(const MeasureJob& job, Measurement& m) {
   m.rank_correlation = rank_correlation(truth, left_out);
 }
 
+/// The settings that the sequence has everything for.
+std::vector<Setting> possible_settings(const MeasureJob& job, const SequenceInfo& info, const MeasureEvents& events) {
+  std::vector<Setting> possible;
+  for (const Setting& setting : job.settings) try {
+      make_plan(info, setting.parameters, {}, job.resolve.threads);
+      possible.push_back(setting);
+    } catch (const Failure& failure) {
+      if (events.warning) events.warning(setting.name() + " is left out: " + failure.what());
+    }
+  return possible;
+}
+
 }  // namespace
 
-Measurement measure_sequence(const MeasureJob& job, const MeasureEvents& events) {
+Measurement measure_sequence(const MeasureJob& asked, const MeasureEvents& events) {
   // What will be run, and against what: headers only.
   Measurement m;
-  m.baseline = find_baseline(job);
+  MeasureJob job = asked;
   const SequenceInfo info =
       probe_sequence(job.resolve.input, job.resolve.frames, job.resolve.roles, parse_jitter_source(job.resolve.jitter));
   check_roles(job.resolve, info);
+  if (job.skip_impossible) job.settings = possible_settings(asked, info, events);
+  m.baseline = find_baseline(job);
   m.frames = info.frames;
   m.with_reference = job.reference.has_value();
   if (m.with_reference)

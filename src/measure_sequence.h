@@ -12,6 +12,7 @@ namespace varve {
 struct MeasureEvents {
   std::function<void(const std::string& what, int done, int total)> step;
   std::function<bool()> should_stop;  ///< looked at between runs
+  std::function<void(const std::string& sentence)> warning;
 };
 
 /// Throws Failure: inconsistent when reference and input have nothing in common, what a run ended with otherwise.

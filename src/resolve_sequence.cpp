@@ -11,18 +11,23 @@
 #include "exr/write_frame.h"
 #include "plan/preset.h"
 #include "resolve/accumulate.h"
+#include "stages/find_cut.h"
+#include "stages/frame_window.h"
+#include "stages/gather_frame.h"
 #include "stages/preflight.h"
 #include "stages/previews.h"
 #include "stages/read_present.h"
+#include "stages/two_sided_pass.h"
 #include "stages/write_resolved.h"
 
 namespace varve {
 namespace {
 
-/// What one subject carries from frame to frame.
+/// What one subject carries from frame to frame: the reader's part and the accumulator's.
 struct SubjectState {
-  History history;
   ForwardMemory forward;
+  History history;
+  GatherMemory gathered;
 };
 
 /// Made once, used for every frame.
@@ -32,6 +37,8 @@ struct Setup {
   Plan plan;
   JitterSource jitter;
   std::string parameters, hash;
+  FrameReach reach;
+  GatherParameters gather;
   std::vector<const Aov*> aovs;  ///< asked for
   std::optional<ColorConversion> into_working_space, out_of_working_space;
   std::optional<DisplayTransform> display;
@@ -49,27 +56,30 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-std::vector<const Aov*> chosen_aovs(const OutputRequest& request) {
-  std::vector<const Aov*> chosen;
-  for (const std::string& name : request.aovs) {
-    if (name == "all") {
-      chosen.clear();
-      for (const Aov& aov : diagnostic_aovs()) chosen.push_back(&aov);
-      return chosen;
-    }
-    const Aov* aov = find_aov(name);
-    if (!aov) throw Failure(ExitCode::usage, "there is no diagnostic plane '" + name + "'; see varve help aovs");
-    chosen.push_back(aov);
-  }
-  return chosen;
-}
-
 Setup set_up(const ResolveJob& job) {
   const JitterSource jitter = parse_jitter_source(job.jitter);
   SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
   check_roles(job, info);
+  // By the time that its pixels show a cut, a frame has met those after it already.
+  if (job.find_cuts && job.parameters.accumulator != Accumulator::recursive)
+    throw Failure(ExitCode::usage,
+                  "--find-cuts goes frame by frame, and this --accumulator looks ahead; name the first frames of shots "
+                  "with --cuts, or give --accumulator recursive");
   Plan plan = make_plan(info, job.parameters, job.request, job.threads);
-  Setup s{job, std::move(info), std::move(plan), jitter, {}, {}, chosen_aovs(job.request), {}, {}, {}};
+  Setup s{job,
+          std::move(info),
+          std::move(plan),
+          jitter,
+          {},
+          {},
+          reach_of(job),
+          job.parameters.gather,
+          planned_aovs(job.request, job.parameters.accumulator),
+          {},
+          {},
+          {}};
+  s.gather.filter = job.parameters.recursive.sample_filter;
+  s.gather.return_tolerance = job.parameters.two_sided.return_tolerance;
   s.parameters = describe_parameters(job, s.info);
   s.hash = hash_of(s.parameters + describe_side_inputs(job));
   // Around the resolve: from the input's space to scene-linear, and from there to the output's.
@@ -107,11 +117,24 @@ void check_same_subjects(const FrameHeaders& first, const FrameHeaders& now, con
                                                   (b.color[k] ? "there" : "missing") + " but not so in frame " +
                                                   std::to_string(first.frame) +
                                                   "; render it again, or leave it out with --frames");
+    const auto same_places = [](const Companion& c, const Companion& d) {
+      for (std::size_t k = 0; k < 4; ++k)
+        if (c.channels[k].has_value() != d.channels[k].has_value()) return false;
+      return c.layer == d.layer && c.color == d.color;
+    };
+    if (!std::equal(a.companions.begin(), a.companions.end(), b.companions.begin(), b.companions.end(), same_places))
+      throw Failure(ExitCode::inconsistent,
+                    where + ", " + layer + ": what --channels names is not what it is in frame " +
+                        std::to_string(first.frame) +
+                        "; render it again, name other channels, or leave it out with --frames");
     const bool other_vectors =
         a.backward.has_value() != b.backward.has_value() || a.forward.has_value() != b.forward.has_value();
-    if ((plan.use_motion && other_vectors) || (plan.use_depth && a.depth.has_value() != b.depth.has_value()))
+    const bool other_marks = (plan.use_id && a.id.has_value() != b.id.has_value()) ||
+                             (plan.use_normal && a.normal.has_value() != b.normal.has_value());
+    if ((plan.use_motion && other_vectors) || (plan.use_depth && a.depth.has_value() != b.depth.has_value()) ||
+        other_marks)
       throw Failure(ExitCode::inconsistent,
-                    where + ", " + layer + ": its depth or motion channels are not those of frame " +
+                    where + ", " + layer + ": its depth, motion, id or normal channels are not those of frame " +
                         std::to_string(first.frame) + "; render it again, or leave it out with --frames");
   }
 }
@@ -126,43 +149,154 @@ auto in_frame(int frame, Work work) {
   }
 }
 
-/// A finished frame is read again only where a later one needs its history.
-bool is_needed(const std::vector<ScheduledFrame>& schedule, std::size_t index) {
-  bool needed = !schedule[index].complete;
-  for (std::size_t k = index + 1; !needed && k < schedule.size() && !schedule[k].restart; ++k)
-    needed = !schedule[k].complete;
+/// A finished frame is worked on again only where a later one needs its history.
+bool is_needed(const std::vector<ScheduledFrame>& schedule, std::size_t index, const FrameReach& reach) {
+  bool needed = schedule[index].write && !schedule[index].complete;
+  for (std::size_t k = index + 1; reach.back_to_restart && !needed && k < schedule.size() && !schedule[k].restart; ++k)
+    needed = schedule[k].write && !schedule[k].complete;
   return needed;
 }
 
-/// One subject: what stands in the files becomes the present, the present meets its history.
+/// Reads one frame of the schedule: headers, the channels that the plan names, a present for each subject.
+SourceFrame read_frame(const Setup& s, const ScheduledFrame& scheduled, std::vector<SubjectState>& states,
+                       Workers& workers) {
+  SourceFrame source;
+  source.headers = read_frame_headers(s.job.input, scheduled.frame, s.job.roles, s.jitter);
+  check_same_subjects(s.info.first, source.headers, s.plan);
+  // Frames that wait in a window do so without what only passes through.
+  const bool whole_parts = s.job.request.keep_channels && s.reach.back_to_restart;
+  const bool as_stored = s.job.parameters.accumulator != Accumulator::recursive;
+  const Plan& plan = s.plan;
+  source.pixels = in_frame(scheduled.frame, [&] {
+    return read_files(source.headers,
+                      {.depth = plan.use_depth,
+                       .motion = plan.use_motion,
+                       .whole_parts = whole_parts,
+                       .forward = plan.use_forward,
+                       .id = plan.use_id,
+                       .normal = plan.use_normal,
+                       .reactive = plan.use_reactive,
+                       .responsive = plan.use_responsive},
+                      workers);
+  });
+  const ReadOptions options{.motion = s.job.parameters.motion,
+                            .use_depth = plan.use_depth,
+                            .use_motion = plan.use_motion,
+                            .use_forward = plan.use_forward,
+                            .as_stored = as_stored,
+                            .use_id = plan.use_id,
+                            .use_normal = plan.use_normal,
+                            .use_reactive = plan.use_reactive,
+                            .use_responsive = plan.use_responsive};
+  for (std::size_t k = 0; k < source.headers.subjects.size(); ++k) {
+    const Subject& subject = source.headers.subjects[k];
+    const Part& part = source.headers.files.front().parts[std::size_t(part_of(subject))];
+    if (scheduled.restart) states[k].forward = {};
+    source.presents.push_back(read_present(subject, source.pixels, part.data_window, part.display_window, options,
+                                           s.into_working_space ? &*s.into_working_space : nullptr, states[k].forward,
+                                           source.vectors_bad, workers));
+  }
+  if (!s.reach.back_to_restart) source.pixels.clear();
+  return source;
+}
+
+/// The file's pixels as stored, for what stands beside the color when it is written.
+FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& workers) {
+  if (!s.job.request.keep_channels) return FileSet(headers.files.size());
+  return in_frame(headers.frame, [&] { return read_files(headers, {.whole_parts = true}, workers); });
+}
+
+/// One subject: the present meets the history.
 struct Resolved {
-  Present present;
   Accumulated accumulated;
-  History prediction;  ///< only where the diagnostic plane of that name is asked for
+  History prediction = {};         ///< only where the diagnostic plane of that name is asked for
+  Plane<glm::vec4> finished = {};  ///< what is written, where that is not what the history keeps
 };
 
-Resolved resolve_subject(const Setup& s, const Subject& subject, const FrameHeaders& headers, const FileSet& pixels,
-                         const ScheduledFrame& scheduled, SubjectState& state, FrameReport& report, Workers& workers) {
-  const Part& part = headers.files.front().parts[std::size_t(part_of(subject))];
+/// Decides whether a frame begins a new shot, before it meets its history: marks it in the schedule if so, and says
+/// why. `before` becomes the trace of this frame.
+void look_for_cut(const SourceFrame& source, FrameTrace& before, ScheduledFrame& scheduled, const ResolveEvents& events,
+                  Workers& workers) {
+  const Present& present = source.presents.front();
+  const Part& part = source.headers.files.front().parts[std::size_t(part_of(source.headers.subjects.front()))];
+  FrameTrace now = trace_of(present, part, scheduled.frame, workers);
+  if (!scheduled.restart) {
+    const CutEvidence evidence = judge_cut(before, now, present);
+    if (evidence.cut) {
+      scheduled.restart = true;
+      scheduled.restart_reason = "cut found: " + evidence.sentence;
+      if (events.warning)
+        events.warning("frame " + std::to_string(scheduled.frame) + " is taken for the first of a new shot: " +
+                       evidence.sentence + "; --find-cuts off lets history pass");
+    }
+  }
+  before = std::move(now);
+}
+
+Resolved resolve_recursive(const Setup& s, const FrameHeaders& headers, const Present& present,
+                           const ScheduledFrame& scheduled, SubjectState& state, Workers& workers) {
   const Parameters& parameters = s.job.parameters;
-  if (scheduled.restart) state = {};
+  if (scheduled.restart) state.history = {};
   Resolved r;
-  r.present = read_present(
-      subject, pixels, part.data_window, part.display_window, {parameters.motion, s.plan.use_depth, s.plan.use_motion},
-      s.into_working_space ? &*s.into_working_space : nullptr, state.forward, report.vectors_bad, workers);
   std::optional<glm::dvec2> jitter;
   if (headers.jitter) jitter = glm::dvec2(headers.jitter->x, headers.jitter->y);
   const std::uint32_t restart_bit = scheduled.restart_reason == "first frame" ? kRejectFirstFrame : kRejectCut;
-  r.accumulated = accumulate(r.present, state.history, parameters.recursive, parameters.rectify, jitter, restart_bit,
+  r.accumulated = accumulate(present, state.history, parameters.recursive, parameters.rectify, jitter, restart_bit,
                              diagnostics_wanted(s.aovs), workers);
   const auto is_prediction = [](const Aov* aov) { return aov->name == "prediction"; };
   if (std::any_of(s.aovs.begin(), s.aovs.end(), is_prediction))
-    r.prediction = predict(r.present, state.history, parameters.recursive, parameters.rectify, workers);
-  report.pixels += part.data_window.pixels();
-  report.not_finite += r.present.not_finite;
-  report.restarted += r.accumulated.counts.restarted;
-  report.clipped += r.accumulated.counts.clipped;
+    r.prediction = predict(present, state.history, parameters.recursive, parameters.rectify, workers);
   return r;
+}
+
+std::vector<Resolved> resolve_recursive(const Setup& s, const SourceFrame& source, const ScheduledFrame& scheduled,
+                                        std::vector<SubjectState>& states, Workers& workers) {
+  std::vector<Resolved> resolved;
+  for (std::size_t k = 0; k < source.presents.size(); ++k)
+    resolved.push_back(resolve_recursive(s, source.headers, source.presents[k], scheduled, states[k], workers));
+  return resolved;
+}
+
+/// Empty when asked to stop.
+std::vector<Resolved> resolve_two_sided(TwoSidedPass& pass, std::size_t index, SourceFrame& source) {
+  std::vector<Resolved> resolved;
+  if (std::optional<std::vector<Accumulated>> all = pass.resolve(index, source))
+    for (Accumulated& accumulated : *all) resolved.push_back({std::move(accumulated), {}});
+  return resolved;
+}
+
+std::vector<Resolved> resolve_gather(const Setup& s, const FrameWindow& window, std::size_t index,
+                                     std::pair<std::size_t, std::size_t> span, std::vector<SubjectState>& states,
+                                     Workers& workers) {
+  std::vector<Resolved> resolved;
+  for (std::size_t k = 0; k < states.size(); ++k)
+    resolved.push_back({gather_frame(window, k, index, span.first, span.second, s.gather, states[k].gathered,
+                                     diagnostics_wanted(s.aovs), workers),
+                        {}});
+  return resolved;
+}
+
+/// What is written where that is not what the history keeps; else empty. What stands in for a pixel is sharpened too.
+Plane<glm::vec4> finish(const Present& present, const History& resolved, const Parameters& parameters,
+                        Workers& workers) {
+  Plane<glm::vec4> shown = fall_back(present, resolved, parameters.fallback, workers);
+  if (!(parameters.finish.sharpen > 0)) return shown;
+  return sharpen(shown.empty() ? resolved.color : shown, resolved.total, parameters.finish.sharpen, workers);
+}
+
+void count(FrameReport& report, const SourceFrame& source, const std::vector<Resolved>& resolved, Workers& workers) {
+  report.vectors_bad += source.vectors_bad;
+  for (std::size_t k = 0; k < resolved.size(); ++k) {
+    report.pixels += source.presents[k].color.window().pixels();
+    report.not_finite += source.presents[k].not_finite;
+    report.restarted += resolved[k].accumulated.counts.restarted;
+    report.clipped += resolved[k].accumulated.counts.clipped;
+    for (std::size_t bit = 0; bit < report.rejected.size(); ++bit)
+      report.rejected[bit] += resolved[k].accumulated.counts.rejected[bit];
+    if (source.presents[k].companions.empty()) continue;
+    report.companions_not_finite += source.presents[k].companions_not_finite;
+    report.lights = report.lights + measure_light_sum(source.presents[k], resolved[k].accumulated.history, workers);
+  }
 }
 
 WriteOptions write_options(const Setup& s, const std::string& frames_used) {
@@ -211,19 +345,28 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
   if (events.planned) events.planned(s.info, s.plan);
 
   // Preflight: what will be written, and whether it can be.
-  const std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash);
+  std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash);
   check_outputs(job, schedule);
 
   Workers workers(job.threads);
   std::vector<SubjectState> states(s.info.first.subjects.size());
-  const ChannelNeeds needs{s.plan.use_depth, s.plan.use_motion, job.request.keep_channels};
+  FrameTrace trace;
+  const auto read = [&](std::size_t index) { return read_frame(s, schedule[index], states, workers); };
+  FrameWindow window(read);
   ResolveSummary summary;
   int total = 0, done = 0;
   for (const ScheduledFrame& scheduled : schedule) total += scheduled.write;
   const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
 
+  const bool gathers = job.parameters.accumulator == Accumulator::gather;
+  std::optional<TwoSidedPass> two_sided;
+  if (job.parameters.accumulator == Accumulator::two_sided)
+    two_sided.emplace(schedule, s.reach, StepOptions{job.parameters, diagnostics_wanted(s.aovs)},
+                      job.request.spill_folder, read, stop, workers);
+
   for (std::size_t i = 0; i < schedule.size() && !stop(); ++i) {
-    const ScheduledFrame& scheduled = schedule[i];
+    ScheduledFrame& scheduled = schedule[i];
+    if (!scheduled.write && !s.reach.back_to_restart) continue;  // there for its neighbors only
     FrameReport report;
     report.frame = scheduled.frame;
     report.restart = scheduled.restart_reason;
@@ -232,37 +375,49 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
       events.warning("frame " + std::to_string(scheduled.frame) + ": " + scheduled.restart_reason +
                      "; its vectors lead to a frame that is not there, so the history starts anew");
 
-    if (!is_needed(schedule, i)) {
-      report.skipped = true;
-      ++summary.frames_skipped;
-      if (events.frame) events.frame(report, ++done, total);
+    if (!is_needed(schedule, i, s.reach)) {
+      report.skipped = scheduled.complete;
+      summary.frames_skipped += scheduled.complete;
+      if (events.frame) events.frame(report, scheduled.write ? ++done : done, total);
       continue;
     }
 
-    // Read.
+    // Read what is not held yet.
     Stopwatch clock;
-    const FrameHeaders headers = read_frame_headers(job.input, scheduled.frame, job.roles, s.jitter);
-    check_same_subjects(s.info.first, headers, s.plan);
-    FileSet pixels = in_frame(scheduled.frame, [&] { return read_files(headers, needs, workers); });
+    const bool one_frame = s.reach.back_to_restart || two_sided;
+    const auto [first, last] = one_frame ? std::pair(i, i) : span_around(schedule, i, s.reach);
+    window.hold(first, last);
+    SourceFrame& source = window[i];
     report.read_seconds = clock.lap();
     if (stop()) break;
 
     // Resolve, subject by subject.
-    std::vector<Resolved> resolved;
-    std::vector<ResolvedSubject> subjects;
-    for (std::size_t k = 0; k < headers.subjects.size(); ++k)
-      resolved.push_back(
-          resolve_subject(s, headers.subjects[k], headers, pixels, scheduled, states[k], report, workers));
-    for (std::size_t k = 0; k < resolved.size(); ++k)
-      subjects.push_back(
-          {&headers.subjects[k], &resolved[k].present, &resolved[k].accumulated, &resolved[k].prediction});
+    if (job.find_cuts) {
+      look_for_cut(source, trace, scheduled, events, workers);
+      report.restart = scheduled.restart_reason;
+    }
+    std::vector<Resolved> resolved = two_sided ? resolve_two_sided(*two_sided, i, source)
+                                     : gathers ? resolve_gather(s, window, i, {first, last}, states, workers)
+                                               : resolve_recursive(s, source, scheduled, states, workers);
+    if (summary.stopped) break;
+    count(report, source, resolved, workers);
+    if (scheduled.write)
+      for (std::size_t k = 0; k < resolved.size(); ++k)
+        resolved[k].finished = finish(source.presents[k], resolved[k].accumulated.history, job.parameters, workers);
     report.resolve_seconds = clock.lap();
     if (stop()) break;
 
     // Write, and remember.
     if (scheduled.write && !scheduled.complete) {
-      in_frame(scheduled.frame,
-               [&] { write_outputs(s, headers, pixels, subjects, frames_used(schedule, i), report, workers); });
+      std::vector<ResolvedSubject> subjects;
+      for (std::size_t k = 0; k < resolved.size(); ++k)
+        subjects.push_back({&source.headers.subjects[k], &source.presents[k], &resolved[k].accumulated,
+                            &resolved[k].prediction, &resolved[k].finished});
+      const FileSet beside = source.pixels.empty() ? read_beside(s, source.headers, workers) : FileSet();
+      const FileSet& pixels = source.pixels.empty() ? beside : source.pixels;
+      in_frame(scheduled.frame, [&] {
+        write_outputs(s, source.headers, pixels, subjects, frames_used(schedule, i, s.reach), report, workers);
+      });
       report.write_seconds = clock.lap();
       report.written = true;
       ++summary.frames_written;

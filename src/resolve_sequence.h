@@ -1,13 +1,16 @@
 // The page to read first: probe -> plan -> preflight -> per frame: read, sanitize, motion, accumulate, write, report.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <string>
 
+#include "base/reject.h"
 #include "base/version.h"
 #include "plan/plan.h"
 #include "plan/resolve_job.h"
+#include "resolve/light_sum.h"
 
 namespace varve {
 
@@ -17,8 +20,11 @@ struct FrameReport {
   std::string path;
   bool written = false, skipped = false;  ///< skipped: complete from an earlier run (--resume); neither: pre-roll
   double read_seconds = 0, resolve_seconds = 0, write_seconds = 0;
+  std::array<std::size_t, kRejectBits> rejected{};  ///< pixels with each bit of the diagnostic plane `reject`
   std::size_t pixels = 0, not_finite = 0, vectors_bad = 0, restarted = 0, clipped = 0, half_overflows = 0;
-  std::string restart;  ///< why the history was dropped; empty if it was not
+  std::size_t companions_not_finite = 0;  ///< values of --channels that were NaN or infinite
+  LightSum lights;                        ///< of the colors that have companions; no pixels without
+  std::string restart;                    ///< why the history was dropped; empty if it was not
 };
 
 struct ResolveSummary {

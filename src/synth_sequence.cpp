@@ -84,12 +84,14 @@ struct Synth {
   synth::Scene scene;
   Window window;
   JitterSource jitter;
+  JitterSource samples;  ///< the same with so many positions for each frame
   Workers workers;
 
   explicit Synth(const SynthJob& given)
       : job(given),
         scene(synth::make_scene(given.scene)),
         jitter(parse_jitter_source(given.jitter)),
+        samples(with_samples(jitter, given.samples)),
         workers(given.threads) {
     window = {0, 0, job.width > 0 ? job.width : scene.width, job.height > 0 ? job.height : scene.height};
   }
@@ -139,14 +141,13 @@ double as_float(double value) {
 
 // Rounded to float, which is what the attribute holds, so that file, table and sample agree to the last bit.
 glm::dvec2 jitter_at(const Synth& synth, int frame, int sample) {
-  JitterSource source = synth.jitter;
   int index = frame;
-  if (source.kind == JitterSource::Kind::halton23) {
-    index = int((std::int64_t(frame) - 1) % source.length) * synth.job.samples + sample + 1;
-    source.length *= synth.job.samples;
+  if (synth.jitter.kind == JitterSource::Kind::pattern) {
+    const auto length = std::int64_t(synth.jitter.points.size());
+    index = int((std::int64_t(frame) - 1) % length) * synth.job.samples + sample + 1;
   }
-  const std::optional<Jitter> found = jitter_of(source, Part{}, index);
-  if (!found && source.kind == JitterSource::Kind::table)
+  const std::optional<Jitter> found = jitter_of(synth.samples, Part{}, index);
+  if (!found && synth.samples.kind == JitterSource::Kind::table)
     throw Failure(ExitCode::inconsistent, synth.job.jitter + " has no jitter for frame " + std::to_string(frame) +
                                               "; add it or choose --frames");
   const Jitter jitter = found.value_or(Jitter{});

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <numeric>
 #include <type_traits>
 
 #include "base/window.h"
@@ -22,7 +23,7 @@ class Plane {
   Plane() = default;
   explicit Plane(const Window& window, int border = 0) : window_(window), border_(border) {
     const std::size_t columns = std::size_t(window.width()) + 2 * std::size_t(border);
-    stride_ = (columns * sizeof(T) + kAlign - 1) / kAlign * kAlign / sizeof(T);
+    stride_ = (columns + kStep - 1) / kStep * kStep;
     rows_ = std::size_t(window.height()) + 2 * std::size_t(border);
     if (stride_ * rows_ > 0)
       data_.reset(static_cast<T*>(::operator new(stride_* rows_ * sizeof(T), std::align_val_t(kAlign))));
@@ -54,7 +55,7 @@ class Plane {
 
  private:
   static constexpr std::size_t kAlign = 64;
-  static_assert(kAlign % sizeof(T) == 0);
+  static constexpr std::size_t kStep = kAlign / std::gcd(kAlign, sizeof(T));  // elements in whole cache lines
   struct Free {
     void operator()(T* p) const { ::operator delete(p, std::align_val_t(kAlign)); }
   };

@@ -3,12 +3,16 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "base/raw_plane.h"
 #include "base/reject.h"
 
 namespace varve {
+
+/// Who can fill a plane, a sum of these.
+inline constexpr unsigned kByRecursive = 1, kByTwoSided = 2, kByGather = 4, kByAll = 7;
 
 struct Aov {
   std::string_view name;        ///< as given to --aov; the channel is varve.<name>[.<component>]
@@ -19,10 +23,14 @@ struct Aov {
   std::string_view colormap;         ///< OpenImageIO color map for --preview
   double preview_low, preview_high;  ///< values shown as the ends of the color map
   std::string_view meaning;
+  unsigned filled_by = kByAll;
 };
 
 std::span<const Aov> diagnostic_aovs();
 const Aov* find_aov(std::string_view name);
+
+/// "--accumulator two-sided or gather": who fills it.
+std::string accumulators_of(const Aov& aov);
 
 /// The bits of the plane `reject`, for help and manual.
 struct RejectName {

@@ -170,7 +170,7 @@ std::optional<RoleChoice> choose_role(const ChannelIndex& index, const ChannelGr
 }
 
 std::optional<ChannelRef> mapped_channel(const ChannelIndex& index, const RoleRequest& request, std::string_view role,
-                                         int preferred_part) {
+                                         int preferred_part, bool integers) {
   const auto asked =
       std::find_if(request.map.begin(), request.map.end(), [&](const auto& m) { return m.first == role; });
   if (asked == request.map.end()) return std::nullopt;
@@ -193,7 +193,7 @@ std::optional<ChannelRef> mapped_channel(const ChannelIndex& index, const RoleRe
                   what + "the channel is subsampled; only channels with every pixel can be used");
   if (is_deep(index.files[std::size_t(found->file)].parts[std::size_t(found->part)]))
     throw Failure(ExitCode::inconsistent, what + "the channel is in a deep part; flatten it first");
-  if (channel.type == PixelType::uint32)
+  if (channel.type == PixelType::uint32 && !integers)
     throw Failure(ExitCode::inconsistent, what + "the channel holds integers, which are never filtered");
   return found;
 }

@@ -57,12 +57,12 @@ ChannelIndex index_channels(std::span<const FileHeader> files);
 /// Layer path as text.
 std::string join_path(std::span<const std::string> path);
 
-/// A place a role may be taken from: the layer it belongs to, and its channels (y is unused for depth).
+/// A place a role may be taken from: the layer it belongs to, and its channels (only x for depth and id).
 struct RoleCandidate {
   const ChannelGroup* group = nullptr;
   std::size_t owner = 0;  ///< the first `owner` elements of the group's path name the layer it belongs to
   int quality = 0;        ///< lower is better among equals
-  ChannelRef x, y;
+  ChannelRef x, y, z{};
 };
 
 /// The best candidate for a color layer: same view, owner above or equal to the layer; longest owner, then same part,
@@ -80,9 +80,21 @@ std::optional<RoleChoice> choose_role(const ChannelIndex& index, const ChannelGr
 void find_motion(const ChannelIndex& index, const ChannelGroup& color, bool main_color, const RoleRequest& request,
                  Subject& subject);
 
+/// Finds the id, the normal and the masks of a subject (find_marks.cpp). What is not there is no failure: the plan
+/// refuses what needs it.
+void find_marks(const ChannelIndex& index, const ChannelGroup& color, bool main_color, const RoleRequest& request,
+                Subject& subject);
+
+/// Finds the layers and channels of request.channels in file 0 (find_channels.cpp) and makes each a companion of the
+/// subject it belongs to or a subject of its own. Only what may be averaged: throws Failure(inconsistent) with the
+/// reason when a name is not there, or leads to vectors, depths, ids and the like, or to a color that is resolved
+/// already; what a pattern meets of these is left out and noted.
+void add_channels(const ChannelIndex& index, const RoleRequest& request, std::vector<Subject>& subjects);
+
 /// The channel that `--map role=` names; in the subject's part if it is there, else the first of that name. None if the
-/// role is not mapped. Throws Failure(inconsistent) if there is no such channel.
+/// role is not mapped. Throws Failure(inconsistent) if there is no such channel, or if it holds integers and `integers`
+/// does not allow them.
 std::optional<ChannelRef> mapped_channel(const ChannelIndex& index, const RoleRequest& request, std::string_view role,
-                                         int preferred_part);
+                                         int preferred_part, bool integers = false);
 
 }  // namespace varve

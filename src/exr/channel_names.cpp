@@ -271,12 +271,15 @@ Subject make_subject(const ChannelIndex& index, const ChosenColor& chosen, bool 
 }
 
 void check_role_names(const RoleRequest& request) {
-  constexpr std::string_view kKnown[] = {"R", "G", "B", "A", "depth", "motion.x", "motion.y", "forward.x", "forward.y"};
+  constexpr std::string_view kKnown[] = {"R",        "G",        "B",         "A",         "depth",
+                                         "motion.x", "motion.y", "forward.x", "forward.y", "id",
+                                         "normal.x", "normal.y", "normal.z",  "reactive",  "responsive"};
   for (const auto& [role, channel] : request.map)
     if (std::find(std::begin(kKnown), std::end(kKnown), role) == std::end(kKnown))
       throw Failure(ExitCode::usage, "--map " + role + "=" + channel +
                                          ": unknown role; the roles are R, G, B, A, depth, motion.x, motion.y, "
-                                         "forward.x and forward.y");
+                                         "forward.x, forward.y, id, normal.x, normal.y, normal.z, reactive and "
+                                         "responsive");
 }
 
 }  // namespace
@@ -300,8 +303,10 @@ std::vector<Subject> find_subjects(std::span<const FileHeader> files, const Role
     Subject subject = make_subject(index, color, mapped.has_value(), request);
     find_depth(index, color.color, request, subject);
     find_motion(index, *color.color.group, color.color.rank <= 1, request, subject);
+    find_marks(index, *color.color.group, color.color.rank <= 1, request, subject);
     subjects.push_back(std::move(subject));
   }
+  add_channels(index, request, subjects);
   return subjects;
 }
 

@@ -14,6 +14,15 @@
 namespace varve {
 
 using VectorChannels = std::array<ChannelRef, 2>;  ///< x, y
+using NormalChannels = std::array<ChannelRef, 3>;  ///< x, y, z
+
+/// Up to four channels that are resolved together with a subject's color, by its motion and its weights.
+struct Companion {
+  std::string layer;  ///< layer path, "" for bare names
+  bool color = true;  ///< the places are R G B A, and each goes with that channel of the subject's color;
+                      ///< false: up to four values that have nothing to do with each other
+  std::array<std::optional<ChannelRef>, 4> channels;
+};
 
 /// One thing to be resolved: a color with its own depth and motion, in one view.
 struct Subject {
@@ -23,7 +32,11 @@ struct Subject {
   bool default_view = true;
   std::array<std::optional<ChannelRef>, 4>
       color;  ///< R G B A; a lone channel stands in the place of its name, Y in that of G
+  std::vector<Companion> companions;
   std::optional<ChannelRef> depth;
+  std::optional<ChannelRef> id;  ///< object index, or the first rank of a Cryptomatte
+  std::optional<NormalChannels> normal;
+  std::optional<ChannelRef> reactive, responsive;   ///< masks, only as mapped
   std::optional<VectorChannels> backward, forward;  ///< as stored, before decoding
   MotionEncoding backward_encoding, forward_encoding;
   std::string convention;  ///< row of the convention table; "" when no vectors were found
@@ -38,12 +51,24 @@ inline int part_of(const Subject& subject) {
   return 0;
 }
 
+/// The parts that hold the subject's color or a companion of it, ascending.
+std::vector<int> parts_of(const Subject& subject);
+
+/// By which weights the channels of RoleRequest::channels are resolved.
+enum class ChannelWeights {
+  own,    ///< each is a subject of its own, with motion and depth of the color
+  beauty  ///< they are companions of the color
+};
+
 /// What the user said about roles.
 struct RoleRequest {
   std::vector<std::string> layers;  ///< layers to resolve; empty: the main one of each view; {"all"}: every color layer
+  std::vector<std::string> channels;  ///< further layers and channels to resolve, by name or by pattern (* and ?)
+  ChannelWeights channel_weights = ChannelWeights::beauty;
   std::vector<std::pair<std::string, std::string>>
-      map;                          ///< role=channel: R G B A depth motion.x motion.y forward.x forward.y;
-                                    ///< full channel names, or part:channel as probe prints them
+      map;                          ///< role=channel: R G B A depth motion.x motion.y forward.x forward.y id normal.x
+                                    ///< normal.y normal.z reactive responsive; full channel names, or part:channel as
+                                    ///< probe prints them
   std::string convention = "auto";  ///< row of the table; auto: told by names, never guessed; none: no vectors are used
   MotionEncoding encoding;          ///< overrides, used where `overrides` says so
   bool override_bias = false, override_scale = false, override_shutter = false, override_sign_x = false,
@@ -53,7 +78,7 @@ struct RoleRequest {
 /// Finds the subjects in the files of one frame (file 0 has the color; depth and motion are looked for in file 0
 /// and then in the role files). Views are matched with views, parts may differ. Throws Failure(inconsistent)
 /// when no color is found, when a named layer or channel does not exist (naming what does), and when vectors are there
-/// but their convention is not told by their names and not given.
+/// but their convention is not told by their names and not given. Further channels are found as add_channels says.
 std::vector<Subject> find_subjects(std::span<const FileHeader> files, const RoleRequest& request);
 
 /// What a channel holds, as far as its name says; for pass-through rules and for probe.

@@ -18,7 +18,6 @@ namespace varve {
 namespace {
 
 constexpr std::uintmax_t kMaxSidecarBytes = std::uintmax_t(64) << 20;  // a million frames need a third of it
-constexpr int kMaxHaltonLength = 1 << 20;
 
 // A sample one whole pixel away cannot belong to the pixel, so more than that is another unit or another thing.
 // Written so that NaN fails.
@@ -105,7 +104,7 @@ JitterSource read_sidecar(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (problem || !in)
     throw Failure(ExitCode::input,
-                  path + ": the jitter file cannot be read; --jitter takes auto, none, halton23 or a CSV file");
+                  path + ": the jitter file cannot be read; --jitter takes auto, none, a pattern or a CSV file");
   if (bytes > kMaxSidecarBytes)
     throw Failure(ExitCode::input, path + ": is too large for a jitter file (more than 64 MiB)");
   JitterSource source;
@@ -120,35 +119,16 @@ JitterSource read_sidecar(const std::string& path) {
   return source;
 }
 
-JitterSource halton(const std::string& text) {
+JitterSource pattern_source(const NamedPattern& named) {
   JitterSource source;
-  source.kind = JitterSource::Kind::halton23;
-  if (text != "halton23") {
-    const std::optional<int> length =
-        whole_number<int>(std::string_view(text).substr(std::string_view("halton23:").size()));
-    if (!length || *length < 1 || *length > kMaxHaltonLength)
-      throw Failure(ExitCode::usage,
-                    "--jitter " + text + ": the length must be a number from 1 to 1048576, such as halton23:16");
-    source.length = *length;
-  }
-  source.description = "Halton (2,3), " + std::to_string(source.length) + " points, frame 1 is the first";
+  source.kind = JitterSource::Kind::pattern;
+  source.pattern = named.pattern;
+  PatternRequest request;
+  if (named.length > 0) request.length = named.length;
+  source.points = named.pattern->points(request);
+  source.description = "pattern " + std::string(named.pattern->name) + ", " + std::to_string(source.points.size()) +
+                       (source.points.size() == 1 ? " point" : " points") + ", frame 1 is the first";
   return source;
-}
-
-// Digits of `index` in `base`, mirrored at the radix point.
-double radical_inverse(int index, int base) {
-  double value = 0, digit = 1;
-  for (; index > 0; index /= base) {
-    digit /= base;
-    value += digit * (index % base);
-  }
-  return value;
-}
-
-Jitter halton_point(int frame, int length) {
-  const std::int64_t turn = (std::int64_t(frame) - 1) % length;
-  const int index = int(turn < 0 ? turn + length : turn) + 1;
-  return {radical_inverse(index, 2) - 0.5, radical_inverse(index, 3) - 0.5};
 }
 
 std::optional<Jitter> jitter_in_header(const Part& part) {
@@ -172,21 +152,44 @@ JitterSource parse_jitter_source(const std::string& text) {
   JitterSource source;
   source.kind = JitterSource::Kind::none;
   if (text == "none") return source;
-  if (text == "halton23" || text.starts_with("halton23:")) return halton(text);
+  if (const std::optional<NamedPattern> named = parse_pattern(text)) return pattern_source(*named);
   std::error_code ignored;
   const bool looks_like_file = text.find_first_of("./") != std::string::npos || std::filesystem::exists(text, ignored);
   if (!looks_like_file)
     throw Failure(ExitCode::usage,
-                  "--jitter " + text + ": unknown; it takes auto, none, halton23, halton23:N or a CSV file");
+                  "--jitter " + text +
+                      ": unknown; it takes auto, none, a CSV file, or a pattern such as halton23:16 (see varve help "
+                      "patterns)");
   return read_sidecar(text);
+}
+
+JitterSource with_samples(JitterSource source, int samples) {
+  // A pattern that has so many points and no more goes round in them; the others get longer.
+  if (source.kind != JitterSource::Kind::pattern || source.pattern->length > 0) return source;
+  const std::int64_t length = std::int64_t(source.points.size()) * samples;
+  if (length > source.pattern->most)
+    throw Failure(ExitCode::usage, "a jitter of " + std::to_string(source.points.size()) + " frames with " +
+                                       std::to_string(samples) + " samples each is too long; " +
+                                       std::string(source.pattern->name) + " has up to " +
+                                       std::to_string(source.pattern->most) + " points");
+  PatternRequest request;
+  request.length = int(length);
+  source.points = source.pattern->points(request);
+  return source;
+}
+
+Jitter pattern_point(std::span<const Jitter> points, int frame) {
+  const auto n = std::int64_t(points.size());
+  const std::int64_t turn = (std::int64_t(frame) - 1) % n;
+  return points[std::size_t(turn < 0 ? turn + n : turn)];
 }
 
 std::optional<Jitter> jitter_of(const JitterSource& source, const Part& part, int frame) {
   switch (source.kind) {
     case JitterSource::Kind::none:
       return std::nullopt;
-    case JitterSource::Kind::halton23:
-      return halton_point(frame, source.length);
+    case JitterSource::Kind::pattern:
+      return pattern_point(source.points, frame);
     case JitterSource::Kind::table: {
       const auto found = source.table.find(frame);
       return found == source.table.end() ? std::nullopt : std::optional<Jitter>(found->second);

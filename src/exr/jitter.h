@@ -4,27 +4,31 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "exr/file_header.h"
+#include "exr/jitter_pattern.h"
 
 namespace varve {
 
-/// Sample position minus pixel centre, pixels, y down.
-struct Jitter {
-  double x = 0, y = 0;
-};
-
-/// What `--jitter` names: `auto`, `none`, a CSV file (frame,jx,jy), or a sequence such as `halton23:16`
+/// What `--jitter` names: `auto`, `none`, a CSV file (frame,jx,jy), or a pattern such as `halton23:16`
 /// (the index of frame f is f modulo the length, 1-based as renderers count: f = 1 is the first point).
 struct JitterSource {
-  enum class Kind { automatic, none, table, halton23 } kind = Kind::automatic;
+  enum class Kind { automatic, none, table, pattern } kind = Kind::automatic;
   std::map<int, Jitter> table;
-  int length = 16;
-  std::string description;  ///< for probe and logs: where the numbers come from
+  const JitterPattern* pattern = nullptr;
+  std::vector<Jitter> points;  ///< of the pattern, with seed and direction 0
+  std::string description;     ///< for probe and logs: where the numbers come from
 };
 
 /// Throws Failure(usage) for an unknown name, Failure(input) with path and line for a bad CSV.
 JitterSource parse_jitter_source(const std::string& text);
+
+/// The same source with `samples` points for each frame, where it is a pattern: those of frame 1 come first.
+JitterSource with_samples(JitterSource source, int samples);
+
+/// Point of a pattern for a frame: the first one for frame 1, before and after that in turns.
+Jitter pattern_point(std::span<const Jitter> points, int frame);
 
 /// Jitter of a frame; none when the source does not know it. `automatic` reads the attribute `jitter` (v2f) and the
 /// JSON in Cycles' `Note` of the part, and nothing else.

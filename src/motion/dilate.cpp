@@ -55,12 +55,15 @@ void choose_row(const Plane<float>& claim, int y, int width, float* strongest, s
 
 }  // namespace
 
-DilatedMotion dilate_motion(Plane<glm::vec2> motion, const Plane<float>& depth, Dilation dilation, Workers& workers) {
+DilatedMotion dilate_motion(Plane<glm::vec2> motion, const Plane<float>& depth, Dilation dilation, Workers& workers,
+                            SurfaceMarks marks) {
   if (dilation == Dilation::none || (dilation == Dilation::nearest && depth.empty()))
-    return {std::move(motion), depth.empty() ? Plane<float>() : depth.clone()};
+    return {std::move(motion), depth.empty() ? Plane<float>() : depth.clone(), std::move(marks)};
   const Window& w = motion.window();
   const Plane<float> claim = claims(motion, depth, dilation, workers);
-  DilatedMotion out{Plane<glm::vec2>(w), depth.empty() ? Plane<float>() : Plane<float>(w)};
+  DilatedMotion out{Plane<glm::vec2>(w), depth.empty() ? Plane<float>() : Plane<float>(w), {}};
+  if (!marks.id.empty()) out.marks.id = Plane<std::uint32_t>(w);
+  if (!marks.normal.empty()) out.marks.normal = Plane<glm::vec3>(w);
   workers.for_rows(w.y0, w.y1, [&](int y) {
     std::vector<float> strongest(std::size_t(w.width()));
     std::vector<std::int32_t> choice(std::size_t(w.width()));
@@ -74,6 +77,8 @@ DilatedMotion dilate_motion(Plane<glm::vec2> motion, const Plane<float>& depth, 
     };
     take(motion, out.motion);
     if (!depth.empty()) take(depth, out.depth);
+    if (!marks.id.empty()) take(marks.id, out.marks.id);
+    if (!marks.normal.empty()) take(marks.normal, out.marks.normal);
   });
   return out;
 }

@@ -2,9 +2,11 @@
 // dilate.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "base/parallel.h"
 #include "base/plane.h"
@@ -36,23 +38,44 @@ Plane<glm::vec2> decode_motion(const Plane<float>& x, const Plane<float>& y, con
 /// or below (as a distance), or from `background` on.
 void canonical_depth(Plane<float>& depth, DepthKind kind, double background, Workers& workers);
 
-/// Backward motion from the vectors of the previous frame to this one: each previous pixel lands, with its motion
-/// turned round, on the four pixels around where it goes; the nearest surface wins, then the closest landing, then the
-/// first in reading order. Where nothing lands (a surface that was hidden), this frame's own forward vector turned
-/// round stands in. `previous_depth` may be empty. Reads: the whole previous frame. Size of the result:
-/// `forward.window()`.
+/// Motion from this frame to another one, made of the vectors `there` that lead from that frame to this one: each pixel
+/// there lands, with its motion turned round, on the four pixels around where it goes; the nearest surface wins, then
+/// the closest landing, then the first in reading order. Works in both directions of time. `depth_there` may be empty.
+/// With `depth` (of this frame), a landing counts only where the surface seen here has its depth, up to
+/// `depth_tolerance` of the nearer one: it may have landed behind something. Where nothing lands, which is where the
+/// surface is hidden there, `otherwise` stands. Reads the whole other frame.
+Plane<glm::vec2> invert_motion(const Plane<glm::vec2>& there, const Plane<float>& depth_there,
+                               const Plane<float>& depth, double depth_tolerance, Plane<glm::vec2> otherwise);
+
+/// How far a pixel's motion to another frame and the motion from there back miss each other: where they do by more than
+/// `tolerance` pixels and a hundredth of their lengths together (|a + b|^2 > tolerance^2 + .01^2 (|a|^2 + |b|^2), after
+/// Sundaram, Brox and Keutzer 2010), the motion becomes NaN. `back` is read at the nearest pixel; where it is NaN or
+/// lies outside, nothing is known and nothing changes.
+void reject_one_way_motion(Plane<glm::vec2>& motion, const Plane<glm::vec2>& back, double tolerance, Workers& workers);
+
+/// Backward motion from the vectors of the previous frame to this one, inverted. Where nothing lands (a surface
+/// that was hidden), this frame's own forward vector turned round stands in. `previous_depth` may be empty. Size of the
+/// result: `forward.window()`.
 Plane<glm::vec2> invert_forward_motion(const Plane<glm::vec2>& previous_forward, const Plane<float>& previous_depth,
                                        const Plane<glm::vec2>& forward);
 
-/// Chosen vectors, and the depth of the pixel each came from (empty without depth).
+/// What else is known of the surface in a pixel; planes that are not there are empty.
+struct SurfaceMarks {
+  Plane<std::uint32_t> id;
+  Plane<glm::vec3> normal;
+};
+
+/// Chosen vectors, and the depth and marks of the pixel each came from (empty where there are none).
 struct DilatedMotion {
   Plane<glm::vec2> motion;
   Plane<float> depth;
+  SurfaceMarks marks;
 };
 
 /// 3x3 dilation; reads a border of one pixel, neighbors outside the window do not count. Ties go to the pixel itself,
 /// then in reading order. NaN vectors take no part; a pixel whose own vector is NaN takes a neighbor's if there is one.
 /// `nearest` needs a depth; where all is background the pixel keeps its own vector.
-DilatedMotion dilate_motion(Plane<glm::vec2> motion, const Plane<float>& depth, Dilation dilation, Workers& workers);
+DilatedMotion dilate_motion(Plane<glm::vec2> motion, const Plane<float>& depth, Dilation dilation, Workers& workers,
+                            SurfaceMarks marks = {});
 
 }  // namespace varve

@@ -201,7 +201,13 @@ std::string roles_of(const SequenceInfo& info, ChannelRef ref) {
       if (channel && *channel == ref) role.append(role.empty() ? "" : "+").append(name);
     };
     for (std::size_t i = 0; i < 4; ++i) take(s.color[i], kColor[i]);
+    for (const Companion& companion : s.companions)
+      for (const std::optional<ChannelRef>& channel : companion.channels) take(channel, "companion");
     take(s.depth, "depth");
+    take(s.id, "id");
+    if (s.normal) take((*s.normal)[0], "normal.x"), take((*s.normal)[1], "normal.y"), take((*s.normal)[2], "normal.z");
+    take(s.reactive, "reactive");
+    take(s.responsive, "responsive");
     if (s.backward) take((*s.backward)[0], "motion.x"), take((*s.backward)[1], "motion.y");
     if (s.forward) take((*s.forward)[0], "forward.x"), take((*s.forward)[1], "forward.y");
     if (role.empty()) continue;

@@ -16,6 +16,7 @@ struct MeasureJob {
   std::optional<SequencePattern> motion;   ///< files with motion vectors, where the input has none
   std::optional<SequencePattern> reference;
   std::vector<Setting> settings;
+  bool skip_impossible = false;  ///< leave out, with a warning, settings that the plan refuses; else they end the run
   int repeats = 3;
   std::string baseline;    ///< name of a setting; empty: the preset `standard` where it is among them, else the first
   double within = 5;       ///< percent above the least error that the recommendation may have

@@ -25,6 +25,8 @@ std::vector<RoleChannel> role_channels(const std::vector<Subject>& subjects) {
   constexpr const char* kColor[] = {"R", "G", "B", "A"};
   for (const Subject& subject : subjects) {
     for (std::size_t i = 0; i < 4; ++i) add(subject.color[i], kColor[i]);
+    for (const Companion& companion : subject.companions)
+      for (const std::optional<ChannelRef>& channel : companion.channels) add(channel, "companion");
     add(subject.depth, "depth");
     if (subject.backward) add((*subject.backward)[0], "motion.x"), add((*subject.backward)[1], "motion.y");
     if (subject.forward) add((*subject.forward)[0], "forward.x"), add((*subject.forward)[1], "forward.y");

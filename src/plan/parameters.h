@@ -3,16 +3,25 @@
 
 #include <string>
 
+#include "gather/gather.h"
 #include "motion/motion.h"
 #include "resolve/accumulate.h"
+#include "resolve/fallback.h"
+#include "resolve/sharpen.h"
+#include "resolve/two_sided.h"
 
 namespace varve {
 
 struct Parameters {
   std::string preset = "salvi";  ///< where the values came from before the user changed any
+  Accumulator accumulator = Accumulator::recursive;
   MotionParameters motion;
   RecursiveParameters recursive;
   RectifyParameters rectify;
+  FallbackParameters fallback;
+  FinishParameters finish;
+  GatherParameters gather;
+  TwoSidedParameters two_sided;
 };
 
 }  // namespace varve

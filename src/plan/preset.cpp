@@ -9,11 +9,48 @@ namespace varve {
 namespace {
 
 constexpr Preset kPresets[] = {
+    {"draft", "Varve", "Three frames on each side, four cells in a pixel, light as it is: a first look.",
+     "accumulator=gather reach=3 cells=2 sigma=0.2 gain=off change-limit=0 firefly-limit=0 sample-filter=none "
+     "return-tolerance=0"},
+    {"standard", "Varve", "Eight frames on each side, sixteen cells, light that changes is followed.",
+     "accumulator=gather reach=8 cells=4 sigma=0.12 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
+     "sample-filter=none return-tolerance=0"},
+    {"high", "Varve", "Sixteen frames on each side: for final frames.",
+     "accumulator=gather reach=16 cells=4 sigma=0.12 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
+     "sample-filter=none return-tolerance=0.5"},
+    {"reference", "Varve", "Twenty-four frames on each side, thirty-six cells: as good as it gets.",
+     "accumulator=gather reach=24 cells=6 sigma=0.1 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
+     "sample-filter=none return-tolerance=0.5"},
+    {"two-sided", "Fraser and Potter 1969; Rauch, Tung and Striebel 1965",
+     "Past and future histories merged: for frames without ids, depth or jitter that the gather could use.",
+     "accumulator=two-sided dilation=longest alpha=0.1 alpha-rule=fixed history-filter=catmull-rom dering=on "
+     "disocclusion=window sample-filter=none look-ahead=8 return-tolerance=0.5 "
+     "box=variance gamma=1 window=3 moments=direct rule=clip anchor=present space=rgb hull-passes=64 "
+     "clip-discount=on"},
     {"salvi", "Salvi 2016, An Excursion in Temporal Supersampling",
      "Variance clipping: sharp history along the longest vector, held to the noise of the present.",
-     "dilation=longest alpha=0.1 alpha-rule=mean history-filter=catmull-rom dering=on disocclusion=window "
-     "sample-filter=none "
-     "box=variance gamma=1 window=3 rule=clip anchor=present space=rgb"},
+     "accumulator=recursive dilation=longest alpha=0.1 alpha-rule=mean history-filter=catmull-rom dering=on "
+     "disocclusion=window "
+     "sample-filter=none look-ahead=0 return-tolerance=0.5 "
+     "box=variance gamma=1 window=3 moments=direct rule=clip anchor=present space=rgb hull-passes=64 "
+     "clip-discount=off"},
+    {"lopez", "Lopez, The Holy Trail; defaults of the public code MSAAFilter",
+     "A tenth of the present, the vector of the nearest surface, sharp history, a wide variance box around the mean.",
+     "accumulator=recursive dilation=nearest alpha=0.1 alpha-rule=fixed history-filter=catmull-rom dering=on "
+     "disocclusion=window sample-filter=none "
+     "box=variance gamma=1.5 window=3 moments=direct rule=clip anchor=center space=rgb hull-passes=64 "
+     "clip-discount=off weighing=luminance"},
+    {"crytek2", "Sousa 2011 (Crysis 2); Wronski 2014",
+     "Two jittered frames in equal parts, neighbors have no say; render with the jitter pattern two-frame.",
+     "accumulator=recursive dilation=none alpha=0.5 alpha-rule=fixed history-filter=bilinear disocclusion=window "
+     "sample-filter=none box=none moments=direct hull-passes=64 clip-discount=off speed-difference=1 "
+     "on-reject=restart"},
+    {"inside", "Pedersen 2016 (INSIDE); its public code",
+     "Present fetched at minus the jitter, history clipped to the center of the rounded box; needs the jitter.",
+     "accumulator=recursive dilation=nearest alpha=0.05 alpha-rule=fixed history-filter=bilinear disocclusion=window "
+     "unjitter=bilinear sample-filter=none "
+     "box=rounded window=3 moments=direct rule=clip anchor=center space=rgb hull-passes=64 clip-discount=off "
+     "feedback=luma feedback-low=0.88 feedback-high=0.97 motion-blur=own motion-blur-from=2 motion-blur-to=15"},
 };
 
 }  // namespace

@@ -19,6 +19,7 @@ struct ResolveJob {
   std::vector<int> frames;                     ///< frames to write; empty: all on disk
   int preroll = 0;                             ///< frames read before the first one written, to warm the history up
   std::vector<int> cuts;                       ///< first frames of new shots
+  bool find_cuts = false;                      ///< look for more of them in the pixels
   RoleRequest roles;
   std::string jitter = "auto";  ///< see parse_jitter_source
   Parameters parameters;

@@ -1,6 +1,7 @@
 #include "plan/value.h"
 
 #include <array>
+#include <cstdio>
 
 namespace varve {
 
@@ -11,6 +12,12 @@ std::string number_text(double number) {
   const auto end = whole ? std::to_chars(buffer.data(), buffer.data() + buffer.size(), number, std::chars_format::fixed)
                          : std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
   return std::string(buffer.data(), end.ptr);
+}
+
+std::string short_number(double value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%g", value);
+  return digits;
 }
 
 std::string range_text(const Range& range, bool whole) {

@@ -54,6 +54,8 @@ std::optional<T> parse_number(std::string_view text) {
 
 /// Shortest text that reads back as the same number; plain digits where that is short.
 std::string number_text(double number);
+/// Six digits at most, for sentences.
+std::string short_number(double value);
 
 /// "a number above 0 up to 1", "a whole number from 3 to 7".
 std::string range_text(const Range& range, bool whole);

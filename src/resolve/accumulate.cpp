@@ -4,7 +4,12 @@
 #include <type_traits>
 #include <utility>
 
+#include "resolve/accumulate_companions.h"
 #include "resolve/accumulate_row.h"
+#include "resolve/box_space.h"
+#include "resolve/bspline.h"
+#include "resolve/rectify_shapes.h"
+#include "resolve/row_passes.h"
 #include "resolve/sample_weights.h"
 
 namespace varve {
@@ -29,23 +34,6 @@ PixelRows<float> write_rows(Plane<T>& plane) {
   return {floats(plane), plane.stride() * std::ptrdiff_t(sizeof(T) / sizeof(float))};
 }
 
-/// The neighborhood's samples in the space of the box, border and all.
-Plane<glm::vec4> rotate_to_ycocg(const Plane<glm::vec4>& color, Workers& workers) {
-  const Window& w = color.window();
-  const int b = color.border();
-  Plane<glm::vec4> out(w, b);
-  workers.for_rows(w.y0 - b, w.y1 + b, [&](int y) {
-    const glm::vec4* from = color.row(y) - b;
-    glm::vec4* to = out.row(y) - b;
-    for (int x = 0; x < w.width() + 2 * b; ++x) {
-      const glm::vec4 c = from[x];
-      const float rb = c.r * 0.25f + c.b * 0.25f;
-      to[x] = {rb + c.g * 0.5f, c.r * 0.5f - c.b * 0.5f, c.g * 0.5f - rb, c.a};
-    }
-  });
-  return out;
-}
-
 /// The steps of a row, as compiled for one processor.
 struct RowKernel {
   decltype(&baseline::fetch_history) fetch_history;
@@ -53,13 +41,20 @@ struct RowKernel {
   decltype(&baseline::blend_present) blend_present;
 };
 
-RowKernel kernel_for(Isa isa) {
+/// Degree of an interpolating B-spline, 0 for other filters.
+int spline_degree(HistoryFilter filter) {
+  return filter == HistoryFilter::bspline3 ? 3 : filter == HistoryFilter::bspline5 ? 5 : 0;
+}
+
+RowKernel kernel_for(Isa isa, HistoryFilter filter) {
+  RowKernel kernel{baseline::fetch_history, baseline::rectify_history, baseline::blend_present};
 #ifdef VARVE_HAVE_AVX2
   if (isa != Isa::baseline && __builtin_cpu_supports("avx2"))
-    return {avx2::fetch_history, avx2::rectify_history, avx2::blend_present};
+    kernel = {avx2::fetch_history, avx2::rectify_history, avx2::blend_present};
 #endif
   (void)isa;
-  return {baseline::fetch_history, baseline::rectify_history, baseline::blend_present};
+  if (filter == HistoryFilter::cubic || spline_degree(filter) > 0) kernel.fetch_history = spline::fetch_history;
+  return kernel;
 }
 
 /// Row buffers of one worker.
@@ -67,13 +62,29 @@ struct Scratch {
   Plane<glm::vec4> history;
   Plane<float> total, spread;
   Plane<std::uint32_t> reject;
+  Plane<float> trust, steadiness;
+  Plane<double> present_weight;
+  RowCounts counts{};
+  std::array<std::size_t, kRejectBits> rejected{};
 
-  explicit Scratch(int width)
+  Scratch(int width, bool weighs)
       : history(Window{0, 0, width, 1}),
         total(Window{0, 0, width, 1}),
         spread(Window{0, 0, width, 1}),
-        reject(Window{0, 0, width, 1}) {}
-  RowScratch view() { return {floats(history), total.row(0), spread.row(0), reject.row(0)}; }
+        reject(Window{0, 0, width, 1}) {
+    if (!weighs) return;
+    trust = Plane<float>(Window{0, 0, width, 1});
+    steadiness = Plane<float>(Window{0, 0, width, 1});
+    present_weight = Plane<double>(Window{0, 0, width, 1});
+  }
+  RowScratch view() {
+    return {floats(history), total.row(0), spread.row(0), reject.row(0),
+            present_weight.empty() ? nullptr : present_weight.row(0)};
+  }
+  RowPassScratch extra() {
+    if (present_weight.empty()) return {};
+    return {trust.row(0), steadiness.row(0), present_weight.row(0)};
+  }
 };
 
 History make_history(const Window& w) {
@@ -87,26 +98,32 @@ History make_history(const Window& w) {
 
 /// The present as the kernel reads it, and the planes made for that.
 struct PresentView {
-  WeighedPresent weighed;    // what is blended in where samples are weighed by their position
-  Plane<glm::vec4> rotated;  // the neighborhood in the space of the box
-  Plane<glm::vec2> at_rest;  // without vectors every pixel stays where it is
+  WeighedPresent weighed;     // what is blended in where samples are weighed by their position
+  BoxSpaceMap space;          // of the box
+  Plane<glm::vec4> in_space;  // the neighborhood in the space of the box
+  Plane<glm::vec2> at_rest;   // without vectors every pixel stays where it is
   std::vector<std::uint8_t> rows_valid;
 };
 
 PresentView view_present(AccumulateView& v, const Present& present, const RectifyParameters& rectify,
-                         SampleFilter sample_filter, std::optional<glm::dvec2> jitter, Workers& workers) {
+                         SampleFilter sample_filter, Unjitter unjitter, std::optional<glm::dvec2> jitter,
+                         Workers& workers) {
   const Window& w = present.color.window();
   PresentView made;
   if (sample_filter != SampleFilter::none && jitter)
     made.weighed = weigh_samples(present, sample_filter, *jitter, workers);
-  if (rectify.box != Box::none && rectify.space == BoxSpace::ycocg)
-    made.rotated = rotate_to_ycocg(present.color, workers);
+  else if (unjitter == Unjitter::bilinear && jitter)
+    made.weighed.color = unjitter_bilinear(present, *jitter, workers);
+  if (rectify.box != Box::none) {
+    made.space = box_space_map(rectify.space, present, workers);
+    made.in_space = plane_in_box_space(made.space, present.color, workers);
+  }
   if (present.motion.empty()) made.at_rest = Plane<glm::vec2>(w, 0, glm::vec2(0.0f));
 
   v.width = w.width();
   v.height = w.height();
   v.color = read_rows(made.weighed.color.empty() ? present.color : made.weighed.color);
-  v.neighbors = read_rows(made.rotated.empty() ? present.color : made.rotated);
+  v.neighbors = read_rows(made.in_space.empty() ? present.color : made.in_space);
   v.weight = read_rows(present.valid);
   v.motion = read_rows(present.motion.empty() ? made.at_rest : present.motion);
   v.sample_weight = read_rows(made.weighed.sample_weight);
@@ -117,8 +134,11 @@ PresentView view_present(AccumulateView& v, const Present& present, const Rectif
   return made;
 }
 
-void view_history(AccumulateView& v, const Present& present, const History& previous, Disocclusion disocclusion) {
-  if (previous.empty()) return;
+/// Gives back the plane of B-spline coefficients that the view points to, where the filter needs one.
+Plane<glm::vec4> view_history(AccumulateView& v, const Present& present, const History& previous,
+                              const RecursiveParameters& recursive, Workers& workers) {
+  const bool depth_test = recursive.disocclusion == Disocclusion::depth && !tests_depth_apart(recursive);
+  if (previous.empty()) return {};
   const Window &w = present.color.window(), &h = previous.color.window();
   v.history_width = h.width();
   v.history_height = h.height();
@@ -128,28 +148,38 @@ void view_history(AccumulateView& v, const Present& present, const History& prev
   v.history_total = read_rows(previous.total);
   v.history_spread = read_rows(previous.spread);
   v.history_rows_valid = previous.rows_valid.data();
-  if (disocclusion == Disocclusion::depth && !present.depth.empty() && !previous.depth.empty()) {
+  if (depth_test && !present.depth.empty() && !previous.depth.empty()) {
     v.depth = read_rows(present.depth);
     v.history_depth = read_rows(previous.depth);
   }
+  const int degree = spline_degree(recursive.history_filter);
+  if (degree == 0) return {};
+  Plane<glm::vec4> coefficients = bspline_coefficients(previous.color, degree, workers);
+  v.history_spline = read_rows(coefficients);
+  return coefficients;
+}
+
+void view_diagnostics(AccumulateView& v, const Window& w, AccumulateDiagnostics& out, const DiagnosticsWanted& wanted) {
+  if (wanted.clip) out.clip = Plane<float>(w);
+  if (wanted.weight) out.weight = Plane<float>(w);
+  if (wanted.reject) out.reject = Plane<std::uint32_t>(w);
+  v.out_clip = write_rows(out.clip);
+  v.out_weight = write_rows(out.weight);
+  if (wanted.reject) v.out_reject = {out.reject.row(w.y0), out.reject.stride()};
 }
 
 void view_output(AccumulateView& v, Accumulated& out, const DiagnosticsWanted& wanted) {
-  const Window& w = out.history.color.window();
-  if (wanted.clip) out.diagnostics.clip = Plane<float>(w);
-  if (wanted.weight) out.diagnostics.weight = Plane<float>(w);
-  if (wanted.reject) out.diagnostics.reject = Plane<std::uint32_t>(w);
+  view_diagnostics(v, out.history.color.window(), out.diagnostics, wanted);
   v.out_color = write_rows(out.history.color);
   v.out_total = write_rows(out.history.total);
   v.out_spread = write_rows(out.history.spread);
-  v.out_clip = write_rows(out.diagnostics.clip);
-  v.out_weight = write_rows(out.diagnostics.weight);
-  if (wanted.reject) v.out_reject = {out.diagnostics.reject.row(w.y0), out.diagnostics.reject.stride()};
   v.out_rows_valid = out.history.rows_valid.data();
 }
 
 void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const RectifyParameters& rectify) {
   v.filter = recursive.history_filter;
+  v.cubic_b = recursive.cubic_b;
+  v.cubic_c = recursive.cubic_c;
   v.dering = recursive.dering;
   v.alpha_rule = recursive.alpha_rule;
   v.alpha = recursive.alpha;
@@ -162,31 +192,116 @@ void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const
   v.gamma = rectify.gamma;
 }
 
-AccumulateCounts run_rows(const AccumulateView& v, Isa isa, Workers& workers) {
-  const RowKernel kernel = kernel_for(isa);
-  std::vector<Scratch> scratch;
-  for (int i = 0; i < workers.count(); ++i) scratch.emplace_back(v.width);
-  std::vector<RowCounts> counts(std::size_t(workers.count()));
-  constexpr int kBand = 8;  // rows: neighbors share what is in the cache
-  workers.for_each(std::size_t((v.height + kBand - 1) / kBand), [&](std::size_t band, int worker) {
-    const RowScratch rows = scratch[std::size_t(worker)].view();
-    const int end = std::min(v.height, int(band + 1) * kBand);
-    for (int y = int(band) * kBand; y < end; ++y) {
-      kernel.fetch_history(v, y, rows);
-      kernel.rectify_history(v, y, rows, counts[std::size_t(worker)]);
-      kernel.blend_present(v, y, rows, counts[std::size_t(worker)]);
-    }
-  });
-  AccumulateCounts sum;
-  for (const RowCounts& c : counts) {
-    sum.restarted += c.restarted;
-    sum.clipped += c.clipped;
-    sum.vectors_bad += c.vectors_bad;
+ShapeRules shape_rules(const RectifyParameters& rectify, const RecursiveParameters& recursive,
+                       const PresentView& made) {
+  return {rectify, made.space, recursive.alpha, made.weighed.color.empty()};
+}
+
+/// What stands between and after the steps of the kernel; null: nothing.
+struct RowSteps {
+  const ShapeRules shapes;
+  const RowPassView passes;
+  const RowPass* fetched = nullptr;
+  const RowPass* rectified = nullptr;  ///< stands in place of the blend, and of what weighs it
+  const CompanionPass* companions = nullptr;
+};
+
+/// Rows through the steps; what the row kernel has no code to rectify goes through the shapes instead.
+class RowRunner {
+ public:
+  RowRunner(const AccumulateView& v, const RowSteps& steps, Isa isa, Workers& workers)
+      : v_(v),
+        steps_(steps),
+        shapes_(needs_shapes(steps.shapes.rectify) ? &steps.shapes : nullptr),
+        kernel_(kernel_for(isa, v.filter)),
+        workers_(workers),
+        room_(std::size_t(workers.count())) {
+    for (int i = 0; i < workers.count(); ++i) scratch_.emplace_back(v.width, steps.passes.weighs);
   }
-  return sum;
+
+  AccumulateCounts all_rows() {
+    if (!shapes_) {
+      run(0, v_.height);
+    } else {
+      prepare_frame(v_, *shapes_, contents_, workers_);
+      const int rows = band_rows(*shapes_, v_.height);
+      for (int begin = 0; begin < v_.height; begin += rows) {
+        const int end = std::min(v_.height, begin + rows);
+        prepare_band(v_, *shapes_, begin, end, contents_, workers_);
+        run(begin, end);
+      }
+    }
+    return sum_of_counts();
+  }
+
+ private:
+  void run(int begin, int end) {
+    constexpr int kBand = 8;  // rows: neighbors share what is in the cache
+    workers_.for_each(std::size_t((end - begin + kBand - 1) / kBand), [&](std::size_t band, int worker) {
+      const int first = begin + int(band) * kBand;
+      for (int y = first; y < std::min(end, first + kBand); ++y) run_row(y, worker);
+    });
+  }
+
+  void run_row(int y, int worker) {
+    const RowPassView& passes = steps_.passes;
+    Scratch& scratch = scratch_[std::size_t(worker)];
+    const RowScratch rows = scratch.view();
+    const RowPassScratch extra = scratch.extra();
+    const bool tests = passes.tests_surfaces || passes.tests_vectors;
+    kernel_.fetch_history(v_, y, rows);
+    if (tests) test_history(passes, y, rows, extra);
+    if (passes.weighs && passes.parameters.weight.anti_flicker > 0) find_clip_events(passes, y, rows, extra);
+    if (steps_.fetched) (*steps_.fetched)(v_, y, rows, worker);
+    if (shapes_)
+      rectify_shapes(v_, *shapes_, contents_, y, rows, room_[std::size_t(worker)], scratch.counts);
+    else
+      kernel_.rectify_history(v_, y, rows, scratch.counts);
+    if (steps_.rectified) {
+      for (int x = 0; tests && x < v_.width; ++x) rows.total[x] *= extra.trust[x];
+      (*steps_.rectified)(v_, y, rows, worker);
+    } else {
+      if (passes.weighs) weigh_present(passes, y, rows, extra);
+      kernel_.blend_present(v_, y, rows, scratch.counts);
+      if (passes.finishes) finish_row(passes, y, rows, extra);
+      if (steps_.companions) accumulate_companions(v_, y, rows, passes, *steps_.companions);
+    }
+    count_bits(rows.reject, v_.width, scratch.rejected);
+  }
+
+  AccumulateCounts sum_of_counts() const {
+    AccumulateCounts sum;
+    for (const Scratch& s : scratch_) {
+      sum.restarted += s.counts.restarted;
+      sum.clipped += s.counts.clipped;
+      sum.vectors_bad += s.counts.vectors_bad;
+      for (std::size_t bit = 0; bit < sum.rejected.size(); ++bit) sum.rejected[bit] += s.rejected[bit];
+    }
+    return sum;
+  }
+
+  const AccumulateView& v_;
+  const RowSteps& steps_;
+  const ShapeRules* shapes_;
+  RowKernel kernel_;
+  Workers& workers_;
+  WindowContents contents_;
+  std::vector<Scratch> scratch_;
+  std::vector<ShapeScratch> room_;
+};
+
+AccumulateCounts run_rows(const AccumulateView& v, const RowSteps& steps, Isa isa, Workers& workers) {
+  return RowRunner(v, steps, isa, workers).all_rows();
 }
 
 }  // namespace
+
+void remember_surfaces(History& history, const Present& present, const RecursiveParameters& p) {
+  if (p.disocclusion == Disocclusion::depth && !present.depth.empty()) history.depth = present.depth.clone();
+  if (p.reject.tests_vectors() && !present.motion.empty()) history.motion = present.motion.clone();
+  if (p.reject.id != IdTest::off && !present.id.empty()) history.id = present.id.clone();
+  if (p.reject.normal_angle > 0 && !present.normal.empty()) history.normal = present.normal.clone();
+}
 
 Accumulated accumulate(const Present& present, const History& previous, const RecursiveParameters& recursive,
                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, std::uint32_t restart_bit,
@@ -194,30 +309,72 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
   Accumulated out{make_history(present.color.window()), {}, {}};
   if (present.color.window().empty()) return out;
   AccumulateView v{};
-  const PresentView made = view_present(v, present, rectify, recursive.sample_filter, jitter, workers);
-  view_history(v, present, previous, recursive.disocclusion);
-  view_output(v, out, wanted);
+  const PresentView made =
+      view_present(v, present, rectify, recursive.sample_filter, recursive.unjitter, jitter, workers);
+  const Plane<glm::vec4> spline = view_history(v, present, previous, recursive, workers);
+  // Companions are blended by the weight of the color.
+  DiagnosticsWanted planes = wanted;
+  planes.weight = wanted.weight || !present.companions.empty();
+  view_output(v, out, planes);
   view_choices(v, recursive, rectify);
   v.restart_bit = restart_bit;
-  out.counts = run_rows(v, isa, workers);
-  if (recursive.disocclusion == Disocclusion::depth && !present.depth.empty())
-    out.history.depth = present.depth.clone();
+  Reconstruct reconstruct;
+  const bool weighs = recursive.sample_filter != SampleFilter::none, moves = recursive.unjitter != Unjitter::none;
+  if (!present.companions.empty() && (weighs || moves) && jitter)
+    reconstruct = [&, weighs](const Plane<glm::vec4>& samples) {
+      Present like;  // the same samples count
+      like.color = samples.clone();
+      like.valid = present.valid.clone();
+      return weighs ? weigh_samples(like, recursive.sample_filter, *jitter, workers).color
+                    : unjitter_bilinear(like, *jitter, workers);
+    };
+  const CompanionPass companions = view_companions(v, present, previous, reconstruct, out.history);
+  out.counts = run_rows(v,
+                        {shape_rules(rectify, recursive, made), row_passes_for(v, present, previous, recursive),
+                         nullptr, nullptr, companions.empty() ? nullptr : &companions},
+                        isa, workers);
+  if (!wanted.weight) out.diagnostics.weight = {};
+  remember_surfaces(out.history, present, recursive);
   return out;
 }
 
 History predict(const Present& present, const History& previous, const RecursiveParameters& recursive,
-                const RectifyParameters& rectify, Workers& workers) {
+                const RectifyParameters& asked, Workers& workers) {
+  RectifyParameters rectify = asked;
+  rectify.anchor = BoxAnchor::mean;
+  // What one pixel counts in a bell or a pyramid is not known afterwards; in the plain window of that size it is.
+  if (rectify.moments != WindowMoments::direct) rectify.moments = WindowMoments::separable;
   Accumulated out{make_history(present.color.window()), {}, {}};
   if (present.color.window().empty()) return std::move(out.history);
   AccumulateView v{};
-  const PresentView made = view_present(v, present, rectify, SampleFilter::none, {}, workers);
-  view_history(v, present, previous, recursive.disocclusion);
+  const PresentView made = view_present(v, present, rectify, SampleFilter::none, Unjitter::none, {}, workers);
+  const Plane<glm::vec4> spline = view_history(v, present, previous, recursive, workers);
   view_output(v, out, {});
   view_choices(v, recursive, rectify);
-  v.anchor = BoxAnchor::mean;
   v.leave_present_out = true;
-  run_rows(v, Isa::automatic, workers);
+  // Only what tells whether there is a history; how it would have been weighed does not matter here.
+  RowPassView passes = row_passes_for(v, present, previous, recursive);
+  passes.finishes = false;
+  run_rows(v, {shape_rules(rectify, recursive, made), passes}, Isa::automatic, workers);
   return std::move(out.history);
+}
+
+AccumulateCounts visit_history(const Present& present, const History& previous, const RecursiveParameters& recursive,
+                               const RectifyParameters& rectify, std::optional<glm::dvec2> jitter,
+                               std::uint32_t restart_bit, const DiagnosticsWanted& wanted,
+                               AccumulateDiagnostics& diagnostics, const RowPass& fetched, const RowPass& rectified,
+                               Workers& workers, Isa isa) {
+  if (present.color.window().empty()) return {};
+  AccumulateView v{};
+  const PresentView made =
+      view_present(v, present, rectify, recursive.sample_filter, recursive.unjitter, jitter, workers);
+  const Plane<glm::vec4> spline = view_history(v, present, previous, recursive, workers);
+  view_diagnostics(v, present.color.window(), diagnostics, wanted);
+  view_choices(v, recursive, rectify);
+  v.restart_bit = restart_bit;
+  return run_rows(
+      v, {shape_rules(rectify, recursive, made), row_passes_for(v, present, previous, recursive), &fetched, &rectified},
+      isa, workers);
 }
 
 }  // namespace varve

@@ -58,6 +58,7 @@ void copy_history(const AccumulateView& v, int y, const RowScratch& s) {
   }
 }
 
+template <bool weighed>
 void blend_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& counts) {
   const float* weight = v.weight.origin + y * v.weight.stride;
   bool all_valid = true;
@@ -71,7 +72,7 @@ void blend_row(const AccumulateView& v, int y, const RowScratch& s, RowCounts& c
     double a = 1, total = w, spread = has_present ? 1 : 0;
     if (has_history) {
       const Float4 history = load(s.history + 4 * x);
-      a = w > 0 ? present_weight(v, double(s.total[x]), w) : 0.0;
+      a = w <= 0 ? 0.0 : weighed ? s.present_weight[x] : present_weight(v, double(s.total[x]), w);
       color = narrow(widen(history) + (widen(present) - widen(history)) * a);
       total = double(s.total[x]) + w;
       spread = double(s.spread[x]) * (1 - a) * (1 - a) + a * a;
@@ -108,6 +109,10 @@ void fetch_history(const AccumulateView& v, int y, const RowScratch& s) {
       return fetch_row<HistoryFilter::catmull_rom9>(v, y, s);
     case HistoryFilter::catmull_rom5:
       return fetch_row<HistoryFilter::catmull_rom5>(v, y, s);
+    case HistoryFilter::cubic:
+    case HistoryFilter::bspline3:
+    case HistoryFilter::bspline5:
+      return;  // fetched by spline::fetch_history
   }
 }
 
@@ -123,14 +128,24 @@ void rectify_history(const AccumulateView& v, int y, const RowScratch& s, RowCou
       return rectify_row<Box::variance>(v, y, s, counts);
     case Box::variance_minmax:
       return rectify_row<Box::variance_minmax>(v, y, s, counts);
+    case Box::rounded:
+    case Box::dynamic4:
+    case Box::kdop7:
+    case Box::kdop13:
+    case Box::pca:
+    case Box::ellipsoid:
+    case Box::hull:
+      return;  // rectify_shapes() runs instead of this step
   }
 }
 
 void blend_present(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts) {
   if (view.leave_present_out)
     copy_history(view, y, scratch);
+  else if (scratch.present_weight)
+    blend_row<true>(view, y, scratch, counts);
   else
-    blend_row(view, y, scratch, counts);
+    blend_row<false>(view, y, scratch, counts);
 }
 
 }  // namespace varve::VARVE_ISA

@@ -39,6 +39,7 @@ struct AccumulateView {
   PixelRows<const float> history_total;   // sum of sample weights so far, 0: no data
   PixelRows<const float> history_spread;  // sum of squared normalized weights
   PixelRows<const float> history_depth;
+  PixelRows<const float> history_spline;  // coefficients of a B-spline through the colors; null with other filters
   const std::uint8_t* history_rows_valid;
 
   // What goes out.
@@ -50,6 +51,7 @@ struct AccumulateView {
 
   // Choices.
   HistoryFilter filter;
+  double cubic_b, cubic_c;  // of the filter cubic
   bool dering;
   Box box;
   BoxRule rule;
@@ -74,6 +76,7 @@ struct RowScratch {
   float* total;    // its weight sum; 0 where there is none
   float* spread;
   std::uint32_t* reject;
+  const double* present_weight = nullptr;  // of each pixel with a history; null: by alpha and its rule
 };
 
 // The three steps of a row, in running order. Between them stand row passes that need no processor of their own.
@@ -87,5 +90,9 @@ void fetch_history(const AccumulateView& view, int y, const RowScratch& scratch)
 void rectify_history(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts);
 void blend_present(const AccumulateView& view, int y, const RowScratch& scratch, RowCounts& counts);
 }  // namespace avx2
+// The first step with the filters that are not worth a processor of their own.
+namespace spline {
+void fetch_history(const AccumulateView& view, int y, const RowScratch& scratch);
+}  // namespace spline
 
 }  // namespace varve

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "base/parallel.h"
@@ -16,17 +17,31 @@ namespace varve {
 inline constexpr int kPresentBorder = 3;
 
 struct Present {
-  Plane<glm::vec4> color;                ///< scene-linear premultiplied RGBA; 0 in the border
+  Plane<glm::vec4> color;                    ///< scene-linear premultiplied RGBA; 0 in the border
+  std::vector<Plane<glm::vec4>> companions;  ///< planes that go with the color (Subject::companions); 0 in the border
+  std::vector<std::uint8_t> companion_is_color;  ///< 1: its places are R G B A; 0: values that stand alone; all 1 if
+                                                 ///< empty
   Plane<float> valid;                    ///< 1 where color came finite from the file, 0 elsewhere and in the border
   std::vector<std::uint8_t> rows_valid;  ///< per row: 1 when every pixel of it is valid
   Plane<glm::vec2> motion;     ///< dilated backward motion, pixels, y down; NaN where unusable; empty: at rest
+  Plane<glm::vec2> forward;    ///< the same to the next frame; empty unless asked for and in the file
   Plane<float> depth;          ///< of the surface that lent the motion, +inf for background; may be empty
+  Plane<std::uint32_t> id;     ///< of that surface, to be compared only; empty unless the plan needs it
+  Plane<glm::vec3> normal;     ///< of that surface, of length 1, or 0 where unknown; empty unless the plan needs it
+  Plane<float> reactive;       ///< of the pixel itself, 0..1: how much less history counts; may be empty
+  Plane<float> responsive;     ///< of the pixel itself, 0 and up: factor on the weight of the present; may be empty
   std::size_t not_finite = 0;  ///< pixels with a channel that was NaN or infinite
+  std::size_t companions_not_finite = 0;  ///< values of companions that were NaN or infinite
 };
 
 /// Replaces every pixel with a non-finite channel by the mean of its valid 3x3 neighbors (0 if it has none), marks it
 /// in `valid` and counts it. Such a pixel has no say afterwards: not in neighborhoods, not in the history. `color` must
 /// have kPresentBorder; the border is cleared. Reads a border of one pixel.
 void sanitize(Present& present, Workers& workers);
+
+/// The same for the companions, after sanitize(): where the color is not valid, and where a companion's value is not
+/// finite, it becomes the mean of what its valid 3x3 neighbors hold. Each channel by itself; neither the color nor
+/// another companion loses anything by it. Where channels sum to the color, the repaired ones do as well.
+void sanitize_companions(Present& present, Workers& workers);
 
 }  // namespace varve

@@ -113,4 +113,30 @@ WeighedPresent weigh_samples(const Present& present, SampleFilter filter, glm::d
   return out;
 }
 
+Plane<glm::vec4> unjitter_bilinear(const Present& present, glm::dvec2 jitter, Workers& workers) {
+  const Window& w = present.color.window();
+  // The sample of pixel p lies at p + jitter: the center lies at p - jitter among the samples.
+  const int dx = int(std::floor(-jitter.x)), dy = int(std::floor(-jitter.y));
+  const double fx = -jitter.x - dx, fy = -jitter.y - dy;
+  const double weights[2][2] = {{(1 - fx) * (1 - fy), fx * (1 - fy)}, {(1 - fx) * fy, fx * fy}};
+  Plane<glm::vec4> out(w);
+  workers.for_rows(w.y0, w.y1, [&](int y) {
+    for (int x = w.x0; x < w.x1; ++x) {
+      const glm::vec4& own = present.color.at(x, y);
+      double sum[4] = {0, 0, 0, 0}, total = 0;
+      for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 2; ++i) {
+          const double weight = weights[j][i] * double(present.valid.at(x + dx + i, y + dy + j));
+          const glm::vec4& c = present.color.at(x + dx + i, y + dy + j);
+          // Differences, so that a constant stays that constant.
+          for (int k = 0; k < 4; ++k) sum[k] += weight * (double(c[k]) - double(own[k]));
+          total += weight;
+        }
+      const bool valid = present.valid.at(x, y) > 0 && total > 0;
+      for (int k = 0; k < 4; ++k) out.at(x, y)[k] = valid ? float(double(own[k]) + sum[k] / total) : own[k];
+    }
+  });
+  return out;
+}
+
 }  // namespace varve

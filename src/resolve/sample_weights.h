@@ -28,4 +28,8 @@ struct WeighedPresent {
 /// of 2 pixels (3 where |jitter| exceeds half a pixel).
 WeighedPresent weigh_samples(const Present& present, SampleFilter filter, glm::dvec2 jitter, Workers& workers);
 
+/// The present at the pixel centers, by a bilinear fetch at minus the jitter (Pedersen 2016): softer than the samples,
+/// tends to a tent over many frames. Invalid samples have no part; an invalid pixel keeps what stands in for it.
+Plane<glm::vec4> unjitter_bilinear(const Present& present, glm::dvec2 jitter, Workers& workers);
+
 }  // namespace varve

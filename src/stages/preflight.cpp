@@ -1,4 +1,5 @@
 #include "stages/preflight.h"
+#include "stages/gather_frame.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -31,14 +32,21 @@ bool is_complete(const std::string& path, const std::string& hash, const std::st
   }
 }
 
-/// All frames to look at: those on disk from `preroll` before the first requested to the last requested.
-std::vector<ScheduledFrame> frames_between(const ResolveJob& job, const SequenceInfo& info) {
+/// First and last frame number that a frame reaches.
+std::pair<long long, long long> limits_of(int frame, const FrameReach& reach) {
+  const long long start = block_start(frame, reach.block);
+  return {start - reach.before, start + reach.block - 1 + reach.after};
+}
+
+/// All frames to look at: those on disk within reach of the first and of the last requested.
+std::vector<ScheduledFrame> frames_between(const ResolveJob& job, const SequenceInfo& info, const FrameReach& reach) {
   const std::set<int> requested(info.frames.begin(), info.frames.end());
   std::set<int> all = requested;
   if (job.input.color.has_frame()) {
-    const long long first = static_cast<long long>(info.frames.front()) - job.preroll;
+    const long long first = limits_of(info.frames.front(), reach).first;
+    const long long last = limits_of(info.frames.back(), reach).second;
     for (const int frame : job.input.color.frames_on_disk())
-      if (frame >= first && frame < info.frames.back()) all.insert(frame);
+      if (frame >= first && frame <= last) all.insert(frame);
   }
   std::vector<ScheduledFrame> schedule;
   for (const int frame : all) schedule.push_back({frame, requested.contains(frame), false, false, ""});
@@ -90,35 +98,67 @@ std::filesystem::path canonical(const std::string& path) { return std::filesyste
 }  // namespace
 
 std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash) {
-  std::vector<ScheduledFrame> schedule = frames_between(job, info);
+  const FrameReach reach = reach_of(job);
+  std::vector<ScheduledFrame> schedule = frames_between(job, info, reach);
   mark_restarts(schedule, job.cuts);
   if (job.resume) {
     for (std::size_t i = 0; i < schedule.size(); ++i) {
       ScheduledFrame& s = schedule[i];
-      const std::string frames = frames_used(schedule, i);
+      const std::string frames = frames_used(schedule, i, reach);
       s.complete = s.write && is_complete(job.output.path(s.frame), hash, frames) &&
                    (!job.diagnostics || is_complete(job.diagnostics->path(s.frame), hash, frames));
     }
-    drop_finished(schedule);
+    if (reach.back_to_restart) drop_finished(schedule);
   }
   return schedule;
 }
 
-std::string frames_used(const std::vector<ScheduledFrame>& schedule, std::size_t index) {
-  std::vector<int> frames = {schedule[index].frame};
-  while (!schedule[index].restart && index > 0) frames.push_back(schedule[--index].frame);
+FrameReach reach_of(const ResolveJob& job) {
+  if (job.parameters.accumulator == Accumulator::recursive) return {job.preroll, 0, true};
+  if (job.parameters.accumulator == Accumulator::gather) {
+    const int reach = gather_reach(job.parameters.gather);
+    return {reach, reach, false};
+  }
+  const int look_ahead = look_ahead_frames(job.parameters.two_sided, job.parameters.recursive.alpha);
+  return {look_ahead, look_ahead, false, look_ahead};
+}
+
+int block_start(int frame, int block) {
+  const int past_start = frame % block;  // negative for frames below 0
+  return frame - past_start - (past_start < 0 ? block : 0);
+}
+
+std::pair<std::size_t, std::size_t> span_around(const std::vector<ScheduledFrame>& schedule, std::size_t index,
+                                                const FrameReach& reach) {
+  std::size_t first = index, last = index;
+  const auto [earliest, latest] = limits_of(schedule[index].frame, reach);
+  while (!schedule[first].restart && first > 0 && (reach.back_to_restart || schedule[first - 1].frame >= earliest))
+    --first;
+  while (last + 1 < schedule.size() && !schedule[last + 1].restart && schedule[last + 1].frame <= latest) ++last;
+  return {first, last};
+}
+
+std::string frames_used(const std::vector<ScheduledFrame>& schedule, std::size_t index, const FrameReach& reach) {
+  const auto [first, last] = span_around(schedule, index, reach);
+  std::vector<int> frames;
+  for (std::size_t i = first; i <= last; ++i) frames.push_back(schedule[i].frame);
   return format_frame_list(frames);
 }
 
 std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info) {
   std::string text = parameters_text(job.parameters);
-  const int first = info.frames.front();
-  text += " first=" + std::to_string(first) + " preroll=" + std::to_string(job.preroll);
+  // Where the history begins decides what recursion gives; a finite window knows nothing of other frames.
+  if (reach_of(job).back_to_restart)
+    text += " first=" + std::to_string(info.frames.front()) + " preroll=" + std::to_string(job.preroll);
   std::vector<int> cuts = job.cuts;
   std::sort(cuts.begin(), cuts.end());
   if (!cuts.empty()) text += " cuts=" + format_frame_list(cuts);
+  if (job.find_cuts) text += " find-cuts=on";
   text += " jitter=" + describe_jitter(job.jitter) + " convention=" + job.roles.convention;
   for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
+  for (const std::string& channels : job.roles.channels) text += " channels=" + channels;
+  if (!job.roles.channels.empty())
+    text += std::string(" channel-weights=") + (job.roles.channel_weights == ChannelWeights::own ? "own" : "beauty");
   for (const auto& [role, channel] : job.roles.map) text += " map:" + role + "=" + channel;
   for (const Subject& subject : info.first.subjects) {
     const MotionEncoding& e = subject.backward ? subject.backward_encoding : subject.forward_encoding;

@@ -1,12 +1,25 @@
 // Before any pixel is read: which frames, where to, and what is already done.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "plan/resolve_job.h"
 
 namespace varve {
+
+/// How far the frames reach that one output is made from, besides its own.
+struct FrameReach {
+  int before = 0, after = 0;     ///< frames, not across restarts
+  bool back_to_restart = false;  ///< recursion: on and on, as far back as there is history
+  int block = 1;                 ///< frames of a block: the reach counts from its first and its last frame
+};
+FrameReach reach_of(const ResolveJob& job);
+
+/// First frame number of the block that a frame lies in; blocks are aligned to frame 0.
+int block_start(int frame, int block);
 
 /// A frame to process: written, or only read to warm the history up.
 struct ScheduledFrame {
@@ -17,12 +30,16 @@ struct ScheduledFrame {
   std::string restart_reason;  ///< "first frame", "cut", "gap after frame 12"
 };
 
-/// Frames in order: requested ones are written, existing ones between them and `preroll` before them only feed the
-/// history. With --resume, frames that no unfinished frame depends on are left out.
+/// Frames in order: requested ones are written, existing ones between them and within reach around them are only made
+/// use of. With --resume, frames that no unfinished frame depends on are left out.
 std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash);
 
-/// The frames that schedule[index] is made from, back to its restart, as a frame list.
-std::string frames_used(const std::vector<ScheduledFrame>& schedule, std::size_t index);
+/// First and last place in the schedule of the frames that schedule[index] is made from.
+std::pair<std::size_t, std::size_t> span_around(const std::vector<ScheduledFrame>& schedule, std::size_t index,
+                                                const FrameReach& reach);
+
+/// The same frames as a frame list.
+std::string frames_used(const std::vector<ScheduledFrame>& schedule, std::size_t index, const FrameReach& reach);
 
 /// Every choice that decides the pixels, as text. Names of files come without their folders, so that equal work gives
 /// equal bytes wherever it is done.

@@ -28,8 +28,7 @@ void write_previews(const std::string& folder, int frame, const std::vector<Reso
     std::string prefix = folder + "/";
     if (subjects.size() > 1 && !resolved.subject->layer.empty()) prefix += file_name(resolved.subject->layer) + ".";
     if (subjects.size() > 1 && !resolved.subject->view.empty()) prefix += file_name(resolved.subject->view) + ".";
-    pictures.emplace_back(
-        [=, &resolved] { write_color_png(prefix + "color" + number, resolved.accumulated->history.color, display); });
+    pictures.emplace_back([=, &resolved] { write_color_png(prefix + "color" + number, resolved.color(), display); });
     for (const Aov* aov : aovs)
       for (int k = 0; k < std::max(1, int(aov->components.size())); ++k) {
         std::string name = prefix + std::string(aov->name);

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -52,6 +56,74 @@ Plane<glm::vec4> read_color(const Subject& subject, const FileSet& files, const 
   return color;
 }
 
+/// Identities as bits, to be compared only: integers as they are, floats by their pattern with one zero. Cryptomatte
+/// stores hashes that way; halves are widened first. 0 where the channel's own window has no data.
+Plane<std::uint32_t> read_id(const RawPlane& raw, const Window& window, Workers& workers) {
+  Plane<std::uint32_t> id(window);
+  const Window common = intersect(raw.window, window);
+  workers.for_rows(window.y0, window.y1, [&](int y) {
+    std::uint32_t* row = id.row(y);
+    std::fill(row, row + window.width(), 0u);
+    if (y < common.y0 || y >= common.y1) return;
+    const std::size_t count = std::size_t(common.width());
+    const std::byte* from =
+        raw.row(y - raw.window.y0) + std::size_t(common.x0 - raw.window.x0) * bytes_per_pixel(raw.type);
+    row += common.x0 - window.x0;
+    if (raw.type == PixelType::uint32) {
+      std::memcpy(row, from, count * sizeof *row);
+      return;
+    }
+    std::vector<float> values(count);
+    to_float(raw.type, from, values.data(), count);
+    for (std::size_t i = 0; i < count; ++i)
+      row[i] = values[i] == 0 ? 0u : std::bit_cast<std::uint32_t>(values[i]);  // one zero
+  });
+  return id;
+}
+
+/// Normals of length 1; 0 where there is none to speak of. Whatever space they are stored in: they are compared between
+/// frames, so it should not turn with the camera.
+Plane<glm::vec3> read_normal(const NormalChannels& channels, const FileSet& files, const Window& window,
+                             Workers& workers) {
+  const Plane<float> x = read_plane(pixels_of(files, channels[0]), window, 0, workers);
+  const Plane<float> y = read_plane(pixels_of(files, channels[1]), window, 0, workers);
+  const Plane<float> z = read_plane(pixels_of(files, channels[2]), window, 0, workers);
+  Plane<glm::vec3> normal(window);
+  workers.for_rows(window.y0, window.y1, [&](int row) {
+    for (int i = 0; i < window.width(); ++i) {
+      const glm::dvec3 n(double(x.row(row)[i]), double(y.row(row)[i]), double(z.row(row)[i]));
+      const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+      normal.row(row)[i] = length > 0 && length < 1e30 ? glm::vec3(n / length) : glm::vec3(0.0f);
+    }
+  });
+  return normal;
+}
+
+/// A mask with `neutral` where it says nothing: not finite, or outside its own window.
+Plane<float> read_mask(const RawPlane& raw, const Window& window, float neutral, float most, Workers& workers) {
+  Plane<float> mask = read_plane(raw, window, neutral, workers);
+  workers.for_rows(window.y0, window.y1, [&](int y) {
+    float* row = mask.row(y);
+    for (int i = 0; i < window.width(); ++i) row[i] = std::isfinite(row[i]) ? std::clamp(row[i], 0.0f, most) : neutral;
+  });
+  return mask;
+}
+
+/// The channels of a companion, interleaved; 0 where there is none, and outside their own window: no light comes from
+/// there.
+Plane<glm::vec4> read_companion(const Companion& companion, const FileSet& files, const Window& window,
+                                Workers& workers) {
+  Plane<glm::vec4> plane(window, kPresentBorder, glm::vec4(0.0f));
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (!companion.channels[k]) continue;
+    const Plane<float> channel = read_plane(pixels_of(files, *companion.channels[k]), window, 0.0f, workers);
+    workers.for_rows(window.y0, window.y1, [&](int y) {
+      for (int x = 0; x < window.width(); ++x) plane.row(y)[x][int(k)] = channel.row(y)[x];
+    });
+  }
+  return plane;
+}
+
 std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const ChannelNeeds& needs, int file) {
   std::vector<ChannelRef> wanted;
   const auto add = [&](ChannelRef ref) {
@@ -60,11 +132,20 @@ std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const Chan
   for (const Subject& subject : headers.subjects) {
     for (const auto& color : subject.color)
       if (color) add(*color);
+    for (const Companion& companion : subject.companions)
+      for (const auto& channel : companion.channels)
+        if (channel) add(*channel);
     if (needs.depth && subject.depth) add(*subject.depth);
+    if (needs.id && subject.id) add(*subject.id);
+    if (needs.normal && subject.normal)
+      for (const ChannelRef& axis : *subject.normal) add(axis);
+    if (needs.reactive && subject.reactive) add(*subject.reactive);
+    if (needs.responsive && subject.responsive) add(*subject.responsive);
     const auto& vectors = subject.backward ? subject.backward : subject.forward;
     if (needs.motion && vectors) add((*vectors)[0]), add((*vectors)[1]);
-    if (needs.whole_parts && file == 0) {
-      const int part = part_of(subject);
+    if (needs.forward && subject.forward) add((*subject.forward)[0]), add((*subject.forward)[1]);
+    if (!needs.whole_parts || file != 0) continue;
+    for (const int part : parts_of(subject)) {
       const std::size_t channels = headers.files.front().parts[std::size_t(part)].channels.size();
       for (int channel = 0; channel < int(channels); ++channel) add({0, part, channel});
     }
@@ -97,31 +178,62 @@ Present read_present(const Subject& subject, const FileSet& pixels, const Window
   present.color = read_color(subject, pixels, window, workers);
   if (into_working_space) into_working_space->apply(present.color, workers);
   sanitize(present, workers);
+  for (const Companion& companion : subject.companions) {
+    present.companions.push_back(read_companion(companion, pixels, window, workers));
+    present.companion_is_color.push_back(companion.color);
+    if (companion.color && into_working_space) into_working_space->apply(present.companions.back(), workers);
+  }
+  sanitize_companions(present, workers);
 
   Plane<float> depth;
   if (options.use_depth && subject.depth) {
     depth = read_plane(pixels_of(pixels, *subject.depth), window, std::numeric_limits<float>::infinity(), workers);
     canonical_depth(depth, options.motion.depth_kind, subject.background_depth, workers);
   }
+  SurfaceMarks marks;
+  if (options.use_id && subject.id) marks.id = read_id(pixels_of(pixels, *subject.id), window, workers);
+  if (options.use_normal && subject.normal) marks.normal = read_normal(*subject.normal, pixels, window, workers);
+  if (options.use_reactive && subject.reactive)
+    present.reactive = read_mask(pixels_of(pixels, *subject.reactive), window, 0, 1, workers);
+  if (options.use_responsive && subject.responsive)
+    present.responsive = read_mask(pixels_of(pixels, *subject.responsive), window, 1, 1e6f, workers);
+  const auto keep = [&present](DilatedMotion followed) {
+    present.motion = std::move(followed.motion);
+    present.depth = std::move(followed.depth);
+    present.id = std::move(followed.marks.id);
+    present.normal = std::move(followed.marks.normal);
+  };
   if (!options.use_motion || (!subject.backward && !subject.forward)) {
-    present.depth = std::move(depth);
+    keep({{}, std::move(depth), std::move(marks)});
     return present;
+  }
+
+  const auto read = [&](const VectorChannels& channels, const MotionEncoding& encoding) {
+    return read_vectors(channels, encoding, pixels, window, display_window, options.motion.max_length, vectors_bad,
+                        workers);
+  };
+  if (options.use_forward && subject.forward) {
+    present.forward = read(*subject.forward, subject.forward_encoding);
+    if (!options.as_stored)
+      present.forward = dilate_motion(std::move(present.forward), depth, options.motion.dilation, workers).motion;
   }
 
   // Backward vectors from the file; or the previous frame's forward vectors turned round.
   Plane<glm::vec2> motion;
   if (subject.backward) {
-    motion = read_vectors(*subject.backward, subject.backward_encoding, pixels, window, display_window,
-                          options.motion.max_length, vectors_bad, workers);
-  } else {
-    Plane<glm::vec2> forward = read_vectors(*subject.forward, subject.forward_encoding, pixels, window, display_window,
-                                            options.motion.max_length, vectors_bad, workers);
+    motion = read(*subject.backward, subject.backward_encoding);
+  } else if (!options.as_stored) {
+    Plane<glm::vec2> forward = read(*subject.forward, subject.forward_encoding);
     motion = invert_forward_motion(memory.motion, memory.depth, forward);
     memory = {std::move(forward), depth.empty() ? Plane<float>() : depth.clone()};
+  } else {
+    keep({{}, std::move(depth), std::move(marks)});
+    return present;
   }
-  DilatedMotion dilated = dilate_motion(std::move(motion), depth, options.motion.dilation, workers);
-  present.motion = std::move(dilated.motion);
-  present.depth = std::move(dilated.depth);
+  if (options.as_stored)
+    keep({std::move(motion), std::move(depth), std::move(marks)});
+  else
+    keep(dilate_motion(std::move(motion), depth, options.motion.dilation, workers, std::move(marks)));
   return present;
 }
 

@@ -15,10 +15,13 @@ namespace varve {
 /// Pixels of a frame, one entry per file (FrameHeaders::files).
 using FileSet = std::vector<FramePixels>;
 
-/// What of a frame's files is read besides the colors of its subjects. Parts without a subject's color never are.
+/// What of a frame's files is read besides the colors of its subjects and their companions. Parts
+/// without any of these never are.
 struct ChannelNeeds {
   bool depth = false, motion = false;
-  bool whole_parts = false;  ///< every channel of the parts that hold a color
+  bool whole_parts = false;  ///< every channel of the parts that hold a color or a companion
+  bool forward = false;      ///< vectors to the next frame, even where there are others
+  bool id = false, normal = false, reactive = false, responsive = false;
 };
 
 /// Reads what a frame needs, each channel once. Throws what read_channels throws.
@@ -35,6 +38,9 @@ struct ReadOptions {
   MotionParameters motion;
   bool use_depth = false;  ///< depth is decoded and kept with the present
   bool use_motion = false;
+  bool use_forward = false;  ///< vectors to the next frame too, where the file has them
+  bool as_stored = false;    ///< vectors are not dilated, and not made where the file has none in that direction
+  bool use_id = false, use_normal = false, use_reactive = false, use_responsive = false;  ///< likewise
 };
 
 /// Converts one subject. `into_working_space` may be null. `memory` holds the previous frame's forward vectors where

@@ -47,10 +47,10 @@ bool several_layers(const std::vector<ResolvedSubject>& subjects) {
   return layers.size() > 1;
 }
 
-/// The resolved color of a subject, converted to the file's space when asked.
-Plane<glm::vec4> color_to_write(const ResolvedSubject& resolved, const ColorConversion* conversion, Workers& workers) {
+/// A resolved color, converted to the file's space; empty when nothing is to be converted.
+Plane<glm::vec4> color_to_write(const Plane<glm::vec4>& resolved, const ColorConversion* conversion, Workers& workers) {
   if (!conversion) return {};
-  Plane<glm::vec4> color = resolved.accumulated->history.color.clone();
+  Plane<glm::vec4> color = resolved.clone();
   conversion->apply(color, workers);
   // A transform may leave the numbers (a log of a negative); outputs hold finite numbers only.
   const Window& w = color.window();
@@ -68,8 +68,8 @@ Plane<glm::vec4> color_to_write(const ResolvedSubject& resolved, const ColorConv
 /// The resolved color in the stored types of its channels.
 void add_color(FileOutput& out, OutputPart& to, const Part& part, const ResolvedSubject& resolved,
                const ColorConversion* conversion, Workers& workers) {
-  const Plane<glm::vec4> converted = color_to_write(resolved, conversion, workers);
-  const Plane<glm::vec4>& color = converted.empty() ? resolved.accumulated->history.color : converted;
+  const Plane<glm::vec4> converted = color_to_write(resolved.color(), conversion, workers);
+  const Plane<glm::vec4>& color = converted.empty() ? resolved.color() : converted;
   const Window& window = color.window();
   std::array<RawPlane*, 4> planes{};
   for (std::size_t k = 0; k < 4; ++k)
@@ -90,6 +90,48 @@ void add_color(FileOutput& out, OutputPart& to, const Part& part, const Resolved
     }
     overflows += held;
   });
+  out.half_overflows += overflows;
+}
+
+/// The channel as it was read; all 0 where it was not.
+void keep_pixels(RawPlane& to, const FramePixels& pixels, int part, int channel) {
+  const bool read = std::size_t(part) < pixels.planes.size() &&
+                    std::size_t(channel) < pixels.planes[std::size_t(part)].size() &&
+                    !pixels.planes[std::size_t(part)][std::size_t(channel)].empty();
+  if (read)
+    to.storage = pixels.planes[std::size_t(part)][std::size_t(channel)].storage.clone();
+  else
+    to.storage.fill(std::byte{0});
+}
+
+/// Companions of a subject that lie in part `p`, in their stored types. Where the part reaches beyond the subject's
+/// window, its channels stay as they were where they are kept.
+void add_companions(FileOutput& out, OutputPart& to, const Part& part, int p, const FramePixels& pixels,
+                    const ResolvedSubject& resolved, const ColorConversion* conversion, Workers& workers) {
+  std::atomic<std::size_t> overflows = 0;
+  for (std::size_t i = 0; i < resolved.subject->companions.size(); ++i) {
+    const Companion& companion = resolved.subject->companions[i];
+    const auto lies_here = [&](const auto& ref) { return ref && ref->part == p; };
+    if (std::none_of(companion.channels.begin(), companion.channels.end(), lies_here)) continue;
+    const Plane<glm::vec4>& history = resolved.accumulated->history.companions[i];
+    const Plane<glm::vec4> converted = color_to_write(history, companion.color ? conversion : nullptr, workers);
+    const Plane<glm::vec4>& values = converted.empty() ? history : converted;
+    const Window common = intersect(values.window(), part.data_window);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto& ref = companion.channels[k];
+      if (!lies_here(ref)) continue;
+      const Channel& channel = part.channels[std::size_t(ref->channel)];
+      RawPlane& plane = out.planes.emplace_back(make_raw_plane(channel.type, part.data_window));
+      if (common != part.data_window) keep_pixels(plane, pixels, p, ref->channel);
+      const std::size_t left = std::size_t(common.x0 - part.data_window.x0) * bytes_per_pixel(channel.type);
+      workers.for_rows(common.y0, common.y1, [&](int y) {
+        std::vector<float> row(static_cast<std::size_t>(common.width()));
+        for (int x = common.x0; x < common.x1; ++x) row[std::size_t(x - common.x0)] = values.at(x, y)[int(k)];
+        overflows += store_row(channel.type, row.data(), plane.row(y - part.data_window.y0) + left, common.width());
+      });
+      to.channels.push_back({channel, &plane});
+    }
+  }
   out.half_overflows += overflows;
 }
 
@@ -134,6 +176,7 @@ FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
     to.source_part = p;
     std::set<std::string> stale;
     for (const ResolvedSubject& resolved : subjects) {
+      add_companions(out, to, part, p, pixels, resolved, out_of_working_space, workers);
       if (part_of(*resolved.subject) != p) continue;
       stale.merge(stale_diagnostics(*resolved.subject));
       add_color(out, to, part, resolved, out_of_working_space, workers);
@@ -179,6 +222,15 @@ Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubje
   if (aov.name == "prediction") fill([&](int x, int y) { return resolved.prediction->color.row(y)[x][component]; });
   if (aov.name == "count")
     fill([&](int x, int y) { return a.history.total.row(y)[x] > 0 ? 1.0f / a.history.spread.row(y)[x] : 0.0f; });
+  if (aov.name == "count-past") fill(of(a.diagnostics.count_past));
+  if (aov.name == "count-future") fill(of(a.diagnostics.count_future));
+  if (aov.name == "variance") fill(of(a.diagnostics.variance));
+  if (aov.name == "frames") fill(of(a.diagnostics.frames));
+  if (aov.name == "surfaces") fill(of(a.diagnostics.surfaces));
+  if (aov.name == "gain") fill(of(a.diagnostics.gain));
+  if (aov.name == "removed") fill(of(a.diagnostics.removed));
+  if (aov.name == "round-trip") fill(of(a.diagnostics.round_trip));
+  if (aov.name == "reject-future") fill(of(a.diagnostics.reject_future));
   if (aov.name == "motion")
     fill([&](int x, int y) {
       const float v = present.motion.empty() ? 0.0f : present.motion.row(y)[x][component];
@@ -192,7 +244,9 @@ DiagnosticsWanted diagnostics_wanted(const std::vector<const Aov*>& aovs) {
   for (const Aov* aov : aovs) {
     if (aov->name == "clip") wanted.clip = true;
     if (aov->name == "weight") wanted.weight = true;
-    if (aov->name == "reject") wanted.reject = true;
+    if (aov->name == "reject" || aov->name == "reject-future") wanted.reject = true;
+    if (aov->name == "count-past" || aov->name == "count-future") wanted.counts = true;
+    if (aov->filled_by == kByGather) wanted.gather = true;
   }
   return wanted;
 }

@@ -19,7 +19,12 @@ struct ResolvedSubject {
   const Subject* subject = nullptr;
   const Present* present = nullptr;
   const Accumulated* accumulated = nullptr;
-  const History* prediction = nullptr;  ///< only where the plane `prediction` is asked for
+  const History* prediction = nullptr;         ///< only where the plane `prediction` is asked for
+  const Plane<glm::vec4>* finished = nullptr;  ///< what is written, where that is not what the history keeps
+
+  const Plane<glm::vec4>& color() const {
+    return finished && !finished->empty() ? *finished : accumulated->history.color;
+  }
 };
 
 /// Parts ready for write_frame, and the planes they point to.
@@ -33,8 +38,9 @@ struct FileOutput {
 /// the default one: "varve.fg.count", "varve.left.motion.x".
 std::string aov_channel(const Aov& aov, const Subject& subject, bool several_layers, std::string_view component);
 
-/// The source's parts with the resolved color in place. With `keep`, other channels stand beside it and parts without a
-/// subject are copied; without, only resolved channels are written. `aovs` are added to each subject's part.
+/// The source's parts with the resolved color and its companions in place. With `keep`, other channels stand beside
+/// them and parts without any are copied; without, only resolved channels are written. `aovs` are added to each
+/// subject's part.
 FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
                           const std::vector<ResolvedSubject>& subjects, const std::vector<const Aov*>& aovs, bool keep,
                           const ColorConversion* out_of_working_space, Workers& workers);

@@ -1,5 +1,6 @@
 // varve resolve as a user meets it: a valid command line on a small sequence, then the same with one thing damaged.
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include <sys/stat.h>
 
@@ -190,6 +191,36 @@ TEST_F(Resolve, WithoutVectorsOnlyWhenToldSo) {
   EXPECT_NE(refused.err.find("--convention none"), std::string::npos) << refused.err;
   EXPECT_TRUE(files_below(folder / "out").empty());
   EXPECT_EQ(run({"--convention", "none"}).code, 0);
+}
+
+TEST_F(Resolve, EveryBoxIsReachedFromTheCommandLineAndPlanned) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> choices = {
+      {{"--box", "rounded"}, "plus of five"},
+      {{"--box", "dynamic4", "--anchor", "center"}, "four taps"},
+      {{"--box", "kdop13", "--rule", "project"}, "13 directions"},
+      {{"--box", "pca", "--rule", "clamp"}, "own axes"},
+      {{"--box", "ellipsoid"}, "ellipsoid"},
+      {{"--box", "hull", "--hull-passes", "4"}, "at most 4 passes"},
+      {{"--rule", "off", "--clip-discount", "on"}, "keeps its color"},
+      {{"--space", "log"}, "log RGB"},
+      {{"--window", "31"}, "--moments separable"},
+      {{"--window", "63", "--moments", "gaussian"}, "63x63"}};
+  for (const auto& [choice, words] : choices) {
+    std::vector<std::string> arguments = {"--aov", "clip"};
+    arguments.insert(arguments.end(), choice.begin(), choice.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 0) << choice[1] << ": " << outcome.err;
+    expect_only_whole_files();
+    arguments.push_back("--dry-run");
+    std::string plan = run(arguments).out;
+    std::replace(plan.begin(), plan.end(), '\n', ' ');  // lines are wrapped and indented
+    plan.erase(std::unique(plan.begin(), plan.end(), [](char a, char b) { return a == ' ' && b == ' '; }), plan.end());
+    EXPECT_NE(plan.find(words), std::string::npos) << words << " in " << plan;
+  }
+  expect_refused(run({"--box", "hull", "--rule", "clamp"}), 2, "--rule project");
+  expect_refused(run({"--box", "kdop7", "--anchor", "center"}), 2, "--anchor mean");
+  expect_refused(run({"--box", "rounded", "--window", "5"}), 2, "--window 3");
+  expect_refused(run({"--clip-discount", "on", "--alpha-rule", "fixed"}), 2, "--alpha-rule mean");
 }
 
 TEST_F(Resolve, ProgressStyles) {

@@ -83,7 +83,9 @@ TEST(Usage, OneThingWrong) {
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--alpha=0.1x"}, "0.1x"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--alpha=nan"}, "above 0 up to 1"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--gamma", "inf"}, "from 0 to 100"},
-      {{"resolve", "in.####.exr", "-o", "out.####.exr", "--window", "4"}, "3, 5, 7"},
+      {{"resolve", "in.####.exr", "-o", "out.####.exr", "--window", "4"}, "an odd whole number from 3 to 63"},
+      {{"resolve", "in.####.exr", "-o", "out.####.exr", "--box", "sphere"}, "ellipsoid"},
+      {{"resolve", "in.####.exr", "-o", "out.####.exr", "--hull-passes", "0"}, "from 1 to 64"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--frames="}, "--frames"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--frames", "10-"}, "10-"},
       {{"resolve", "in.####.exr", "-o", "out.####.exr", "--preset", "salvo"}, "salvo"},
@@ -139,9 +141,13 @@ TEST(Usage, BashCompletes) {
 
 TEST(Usage, AFullDiskIsNoticed) {
   Folder folder;
-  const std::string line = std::string(VARVE_PROGRAM) + " help resolve > /dev/full 2> " + (folder / "err").string();
-  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 5);
-  EXPECT_NE(bytes_of(folder / "err").find("standard output"), std::string::npos);
+  // What fits the buffer of the stream, and what does not.
+  for (const std::string topic : {"probe", "resolve", "resolve --all"}) {
+    const std::string line =
+        std::string(VARVE_PROGRAM) + " help " + topic + " > /dev/full 2> " + (folder / "err").string();
+    EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 5) << topic;
+    EXPECT_NE(bytes_of(folder / "err").find("standard output"), std::string::npos) << topic;
+  }
 }
 
 TEST(Usage, AReaderThatGoesAwayIsAQuietEnd) {

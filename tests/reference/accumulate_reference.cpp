@@ -6,22 +6,13 @@
 #include <vector>
 
 #include "base/reject.h"
+#include "reference/reject_reference.h"
 #include "resolve/sample_weights.h"
 
 namespace varve::reference {
 namespace {
 
 Color color_of(const glm::vec4& c) { return {c.r, c.g, c.b, c.a}; }
-
-Color rotate(const Color& c, BoxSpace space) {
-  if (space == BoxSpace::rgb) return c;
-  return {c[0] / 4 + c[1] / 2 + c[2] / 4, c[0] / 2 - c[2] / 2, -c[0] / 4 + c[1] / 2 - c[2] / 4, c[3]};
-}
-
-Color rotate_back(const Color& c, BoxSpace space) {
-  if (space == BoxSpace::rgb) return c;
-  return {c[0] + c[1] - c[2], c[0] + c[2], c[0] - c[1] - c[2], c[3]};
-}
 
 /// Keys' cubic with a = -1/2, as a function of the distance.
 double keys(double t) {
@@ -61,7 +52,9 @@ Fetched fetch(const History& h, const Present& present, const RecursiveParameter
   const double fx = px - bx, fy = py - by;
 
   // The four around the position, each on its own merits.
-  const bool test_depth = p.disocclusion == Disocclusion::depth && !present.depth.empty() && !h.depth.empty();
+  const bool judged_later = p.reject.depth_slope > 0 || p.reject.on_reject == OnReject::weight;
+  const bool test_depth =
+      p.disocclusion == Disocclusion::depth && !judged_later && !present.depth.empty() && !h.depth.empty();
   double share = 0, youngest = std::numeric_limits<double>::infinity(), heaviest = 0;
   Color mean{};
   bool all = true, depth_failed = false;
@@ -122,69 +115,15 @@ Fetched fetch(const History& h, const Present& present, const RecursiveParameter
   return f;
 }
 
-struct BoxBounds {
-  Color low, high, mean;
-};
-
-std::optional<BoxBounds> box_of(const Present& present, const RectifyParameters& p, int x, int y,
-                                bool with_centre = true) {
-  std::vector<Color> samples;
-  const int r = p.window / 2;
-  for (int j = y - r; j <= y + r; ++j)
-    for (int i = x - r; i <= x + r; ++i)
-      if (present.color.window().contains(i, j) && present.valid.at(i, j) > 0 && (with_centre || i != x || j != y))
-        samples.push_back(rotate(color_of(present.color.at(i, j)), p.space));
-  if (samples.empty()) return {};
-  BoxBounds b;
-  for (std::size_t k = 0; k < 4; ++k) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    long double sum = 0;
-    for (const Color& c : samples) low = std::min(low, c[k]), high = std::max(high, c[k]), sum += c[k];
-    const long double mean = sum / static_cast<long double>(samples.size());
-    long double m2 = 0;
-    for (const Color& c : samples) m2 += (c[k] - mean) * (c[k] - mean);
-    const double sigma = double(std::sqrt(m2 / static_cast<long double>(samples.size())));
-    b.mean[k] = p.box == Box::minmax ? low / 2 + high / 2 : double(mean);
-    b.low[k] = p.box == Box::minmax ? low : double(mean) - p.gamma * sigma;
-    b.high[k] = p.box == Box::minmax ? high : double(mean) + p.gamma * sigma;
-    if (p.box == Box::variance_minmax) b.low[k] = std::max(b.low[k], low), b.high[k] = std::min(b.high[k], high);
-  }
-  const double scale = std::max({std::abs(b.mean[0]), std::abs(b.mean[1]), std::abs(b.mean[2])});
-  for (std::size_t k = 0; k < 4; ++k) {
-    const double floor = 1e-6 * (k < 3 ? scale : std::abs(b.mean[3]));
-    b.low[k] -= floor;
-    b.high[k] += floor;
-  }
-  return b;
-}
-
-double length3(const Color& c) { return std::hypot(c[0], c[1], c[2]); }
-
-/// Moves the history into the box; returns the clip distance.
-double rectify_color(Color& color, const Color& present, const BoxBounds& b, const RectifyParameters& p) {
-  const Color h = rotate(color, p.space);
-  bool inside = true;
-  for (std::size_t k = 0; k < 4; ++k) inside = inside && h[k] >= b.low[k] && h[k] <= b.high[k];
-  if (inside) return 0;
-  Color moved;
-  if (p.rule == BoxRule::clamp) {
-    for (std::size_t k = 0; k < 4; ++k) moved[k] = std::clamp(h[k], b.low[k], b.high[k]);
-  } else {
-    const Color target = p.anchor == BoxAnchor::mean ? b.mean : rotate(present, p.space);
-    double t = 1;
-    Color g;
-    for (std::size_t k = 0; k < 4; ++k) {
-      g[k] = std::clamp(target[k], b.low[k], b.high[k]);
-      if (h[k] > b.high[k]) t = std::min(t, (b.high[k] - g[k]) / (h[k] - g[k]));
-      if (h[k] < b.low[k]) t = std::min(t, (g[k] - b.low[k]) / (g[k] - h[k]));
-    }
-    for (std::size_t k = 0; k < 4; ++k) moved[k] = g[k] + t * (h[k] - g[k]);
-  }
-  const Color before = color;
-  color = rotate_back(moved, p.space);
-  const Color change{color[0] - before[0], color[1] - before[1], color[2] - before[2], 0};
-  const double scale = std::max(length3(before), length3(color));
-  return scale > 0 ? length3(change) / scale : 0;
+/// What the tests leave of a fetched history; returns its trust.
+double judge_history(Fetched& past, const Present& present, const History& previous, const RecursiveParameters& p,
+                     int x, int y) {
+  if (past.total <= 0) return 0;
+  const Judged judged = judge(present, previous, p, x, y);
+  if (judged.replaced) past.color = judged.color, past.total = judged.total, past.spread = judged.spread;
+  past.reject |= judged.bits;
+  if (judged.trust <= 1e-6 && p.reject.on_reject != OnReject::weight) past.total = 0;
+  return judged.trust;
 }
 
 /// The present at a pixel centre: its own sample, or the weighted samples around (math, section 5).
@@ -219,9 +158,14 @@ Color present_at(const Present& present, SampleFilter filter, std::optional<glm:
 
 }  // namespace
 
-Pixel accumulate_pixel(const Present& present, const History& previous, const RecursiveParameters& p,
-                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
-                       int y) {
+Color weighed_present(const Present& present, SampleFilter filter, std::optional<glm::dvec2> jitter, int x, int y,
+                      double& weight) {
+  return present_at(present, filter, jitter, x, y, weight);
+}
+
+Pixel rectified_history(const Present& present, const History& previous, const RecursiveParameters& p,
+                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
+                        int y, Color& fetched, double& trust) {
   Pixel out;
   double w = 1;
   const Color now = present_at(present, p.sample_filter, jitter, x, y, w);
@@ -230,22 +174,56 @@ Pixel accumulate_pixel(const Present& present, const History& previous, const Re
     past.reject = restart_bit;
   else
     past = fetch(previous, present, p, x, y);
+  trust = previous.empty() ? 0 : judge_history(past, present, previous, p, x, y);
   out.reject = past.reject | (present.valid.at(x, y) > 0 ? 0u : unsigned(kRejectPresent));
+  fetched = past.color;
+  if (past.total <= 0) return out;
+  if (const auto held = reference::rectify(present, rectify, past.color, now, x, y, true)) {
+    past.color = held->color;
+    out.clip = held->clip;
+    if (rectify.clip_discount && held->distance > 0) {
+      const double count = std::min(past.total, (1 - p.alpha) / p.alpha);
+      past.total = std::max(1e-30, count / (1 + count * held->distance * held->distance / held->noise));
+    }
+  }
+  out.color = past.color;
+  out.total = past.total;
+  out.spread = past.spread;
+  return out;
+}
+
+Pixel accumulate_pixel(const Present& present, const History& previous, const RecursiveParameters& p,
+                       const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
+                       int y) {
+  Color fetched;
+  double trust = 0;
+  const Pixel past = rectified_history(present, previous, p, rectify, jitter, restart_bit, x, y, fetched, trust);
+  double w = 1;
+  const Color now = present_at(present, p.sample_filter, jitter, x, y, w);
+  Pixel out = past;
+  const bool valid = present.valid.at(x, y) > 0, blurs = p.reject.on_reject == OnReject::blur && !previous.empty();
   if (past.total <= 0) {
-    out.color = now;
+    out.color = blurs ? softened(present, x, y) : now;
     out.total = w;
-    out.spread = present.valid.at(x, y) > 0 ? 1 : 0;
+    out.spread = !valid ? 0 : blurs ? 36.0 / 256 : 1;
     return out;
   }
-  if (rectify.box != Box::none)
-    if (const auto box = box_of(present, rectify, x, y)) out.clip = rectify_color(past.color, now, *box, rectify);
-
-  const double steady = p.alpha * w / (1 - p.alpha + p.alpha * w);
-  const double a = w > 0 ? (p.alpha_rule == AlphaRule::fixed ? steady : std::max(steady, w / (past.total + w))) : 0;
+  bool reactive = false;
+  double total = past.total;
+  const double share =
+      weight_of_present(present, p, rectify.gamma, now, fetched, past.color, trust, w, total, reactive, x, y);
+  const double a = w > 0 ? share : 0;
+  if (reactive) out.reject |= kRejectReactive;
   for (std::size_t k = 0; k < 4; ++k) out.color[k] = (1 - a) * past.color[k] + a * now[k];
-  out.total = past.total + w;
+  if (p.weight.weighing == Weighing::logarithm && valid)
+    for (std::size_t k = 0; k < 3; ++k) out.color[k] = log_blend(past.color[k], now[k], a, p.weight.exposure);
+  out.total = total + w;
   out.spread = past.spread * (1 - a) * (1 - a) + a * a;
   out.weight = 1 - a;
+  if (!blurs) return out;
+  const Color soft = softened(present, x, y);
+  for (std::size_t k = 0; k < 4; ++k) out.color[k] = trust * out.color[k] + (1 - trust) * soft[k];
+  if (valid) out.spread = trust * trust * out.spread + (1 - trust) * (1 - trust) * 36 / 256;
   return out;
 }
 
@@ -253,14 +231,15 @@ Pixel predict_pixel(const Present& present, const History& previous, const Recur
                     const RectifyParameters& rectify, int x, int y) {
   Pixel out;
   if (previous.empty()) return out;
-  const Fetched past = fetch(previous, present, p, x, y);
+  Fetched past = fetch(previous, present, p, x, y);
+  judge_history(past, present, previous, p, x, y);
   if (past.total <= 0) return out;
   out.color = past.color;
   out.total = past.total;
   RectifyParameters towards_mean = rectify;
   towards_mean.anchor = BoxAnchor::mean;
-  if (rectify.box != Box::none)
-    if (const auto box = box_of(present, rectify, x, y, false)) rectify_color(out.color, {}, *box, towards_mean);
+  if (towards_mean.moments != WindowMoments::direct) towards_mean.moments = WindowMoments::separable;
+  if (const auto held = reference::rectify(present, towards_mean, past.color, {}, x, y, false)) out.color = held->color;
   return out;
 }
 

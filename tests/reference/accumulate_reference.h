@@ -1,17 +1,15 @@
 // The slow twin of the recursive accumulator: one pixel at a time, in double, straight from the equations.
 #pragma once
 
-#include <array>
 #include <optional>
 
 #include <glm/vec2.hpp>
 
 #include "motion/motion.h"
+#include "reference/rectify_reference.h"
 #include "resolve/accumulate.h"
 
 namespace varve::reference {
-
-using Color = std::array<double, 4>;
 
 struct Pixel {
   Color color{};
@@ -23,6 +21,16 @@ struct Pixel {
 Pixel accumulate_pixel(const Present& present, const History& previous, const RecursiveParameters& recursive,
                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
                        int y);
+
+/// The history at (x, y) before the present is blended in: rectified; `fetched` is what it was before that,
+/// `trust` how much of it the tests believe.
+Pixel rectified_history(const Present& present, const History& previous, const RecursiveParameters& recursive,
+                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
+                        int y, Color& fetched, double& trust);
+
+/// The present at a pixel centre and the weight of its sample, 0 where it is not valid.
+Color weighed_present(const Present& present, SampleFilter filter, std::optional<glm::dvec2> jitter, int x, int y,
+                      double& weight);
 
 /// What predict() must give; total 0 where there is no history.
 Pixel predict_pixel(const Present& present, const History& previous, const RecursiveParameters& recursive,

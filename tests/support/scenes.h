@@ -17,7 +17,28 @@ struct NoiseOptions {
   double bad_motion = 0;  ///< share of NaN vectors
   bool with_depth = false;
   float scale = 1;
+  bool with_marks = false;  ///< ids, normals and both masks
 };
+
+/// Three objects in slanted bands, each turned its own way but for the noise, some of it unknown; masks at random.
+inline void add_marks(Present& p, std::mt19937& random) {
+  const Window& w = p.color.window();
+  std::uniform_real_distribution<float> unit(0, 1);
+  p.id = Plane<std::uint32_t>(w);
+  p.normal = Plane<glm::vec3>(w);
+  p.reactive = Plane<float>(w);
+  p.responsive = Plane<float>(w);
+  for (int y = w.y0; y < w.y1; ++y)
+    for (int x = w.x0; x < w.x1; ++x) {
+      const int object = (x + 2 * y + 1000) % 13 / 5;
+      p.id.at(x, y) = std::uint32_t(object) * 4294967u;
+      const double angle = object * 0.9 + 0.2 * double(unit(random));
+      p.normal.at(x, y) =
+          unit(random) < 0.05f ? glm::vec3(0.0f) : glm::vec3(float(std::cos(angle)), float(std::sin(angle)), 0.0f);
+      p.reactive.at(x, y) = unit(random) < 0.5f ? 0.0f : unit(random);
+      p.responsive.at(x, y) = 2 * unit(random);
+    }
+}
 
 /// Two-tone noise with an occasional highlight; vectors at random; sanitized.
 inline Present noise_present(const Window& w, const NoiseOptions& o, Workers& workers) {
@@ -47,6 +68,7 @@ inline Present noise_present(const Window& w, const NoiseOptions& o, Workers& wo
         p.depth.at(x, y) =
             edge ? 5.0f + 0.1f * unit(random) : (unit(random) < 0.2f ? std::numeric_limits<float>::infinity() : 9.0f);
     }
+  if (o.with_marks) add_marks(p, random);
   sanitize(p, workers);
   return p;
 }

@@ -110,12 +110,87 @@ std::vector<TwinCase> twin_cases() {
   depth.noise.with_depth = true;
   depth.noise.seed = ++seed;
   cases.push_back(depth);
+  // Rejection, each test by itself and then together, with everything it may do.
+  const auto add_reject = [&](const char* name, auto set) {
+    for (const OnReject then : {OnReject::restart, OnReject::blur, OnReject::weight}) {
+      TwinCase c{name, {}, {}, {}};
+      c.recursive.reject.on_reject = then;
+      c.noise = {++seed, 0.02, 3, 0.03, true, 1, true};
+      c.recursive.weight.reactive = 0;
+      set(c.recursive);
+      cases.push_back(c);
+    }
+  };
+  add_reject("slope", [](RecursiveParameters& p) {
+    p.disocclusion = Disocclusion::depth;
+    p.reject.depth_slope = 1.5;
+  });
+  add_reject("normal", [](RecursiveParameters& p) { p.reject.normal_angle = 25; });
+  add_reject("id", [](RecursiveParameters& p) { p.reject.id = IdTest::hard; });
+  add_reject("soft id", [](RecursiveParameters& p) { p.reject.id = IdTest::soft; });
+  add_reject("speed", [](RecursiveParameters& p) { p.reject.speed = 0.8; });
+  add_reject("direction", [](RecursiveParameters& p) { p.reject.direction = 50; });
+  add_reject("acceleration", [](RecursiveParameters& p) {
+    p.reject.acceleration = 5;
+    p.reject.acceleration_low = 1;
+  });
+  add_reject("all tests", [](RecursiveParameters& p) {
+    p.disocclusion = Disocclusion::depth;
+    p.reject.depth_slope = 1;
+    p.reject.normal_angle = 40;
+    p.reject.id = IdTest::soft;
+    p.reject.acceleration = 6;
+    p.weight.reactive = 0.8;
+    p.sample_filter = SampleFilter::tent;
+  });
+  const auto add_weight = [&](const char* name, auto set) {
+    for (const AlphaRule rule : {AlphaRule::fixed, AlphaRule::mean}) {
+      TwinCase c{name, {}, {}, {}};
+      c.recursive.alpha_rule = rule;
+      c.noise.seed = ++seed;
+      c.noise.bad_share = 0.02;
+      set(c.recursive.weight, c.noise);
+      cases.push_back(c);
+    }
+  };
+  add_weight("luma", [](WeightParameters& p, auto&) { p.feedback = Feedback::luma; });
+  add_weight("speed alpha", [](WeightParameters& p, auto&) { p.speed_alpha = 0.7, p.full_speed = 4; });
+  add_weight("anti-flicker", [](WeightParameters& p, auto&) { p.anti_flicker = 0.9; });
+  add_weight("masks", [](WeightParameters& p, auto& noise) { p.reactive = 0.9, noise.with_marks = true; });
+  add_weight("all weights", [](WeightParameters& p, auto& noise) {
+    p.feedback = Feedback::luma;
+    p.speed_alpha = 0.4;
+    p.anti_flicker = 1;
+    noise.with_marks = true;
+  });
+  return cases;
+}
+
+/// Weighing by brightness: these scale with the light only if the exposure follows.
+std::vector<TwinCase> weighing_cases() {
+  std::vector<TwinCase> cases;
+  unsigned seed = 500;
+  for (const Weighing weighing : {Weighing::luminance, Weighing::logarithm})
+    for (const double exposure : {0.0, -3.0}) {
+      TwinCase c{"weighing", {}, {}, {}};
+      c.recursive.weight.weighing = weighing;
+      c.recursive.weight.exposure = exposure;
+      c.noise.seed = ++seed;
+      c.noise.bad_share = 0.02;
+      cases.push_back(c);
+    }
+  return cases;
+}
+
+std::vector<TwinCase> all_cases() {
+  std::vector<TwinCase> cases = twin_cases();
+  for (const TwinCase& c : weighing_cases()) cases.push_back(c);
   return cases;
 }
 
 TEST(Accumulate, AgreesWithItsSlowTwin) {
   Workers workers(2);
-  for (const TwinCase& c : twin_cases()) {
+  for (const TwinCase& c : all_cases()) {
     SCOPED_TRACE(std::string(c.name) + " seed " + std::to_string(c.noise.seed));
     const Window first{-3, 5, 34, 28}, second{2, 3, 43, 24};  // odd sizes; the window moves
     test::NoiseOptions before = c.noise;
@@ -156,7 +231,7 @@ TEST(Accumulate, PredictionAgreesWithItsSlowTwinAndOwesNothingToThePresentPixel)
 
 TEST(Accumulate, BothProcessorsGiveTheSameBits) {
   Workers workers(2);
-  for (const TwinCase& c : twin_cases()) {
+  for (const TwinCase& c : all_cases()) {
     const Window w{0, 0, 61, 37};
     const Present a = noise_present(w, c.noise, workers);
     const History h = next_history(a, {}, c.recursive, c.rectify, workers);
@@ -173,22 +248,24 @@ TEST(Accumulate, BothProcessorsGiveTheSameBits) {
 
 TEST(Accumulate, ThreadsDoNotChangeAByte) {
   Workers one(1), many(5);
-  test::NoiseOptions noise{7, 0.02, 4, 0.02, false, 1};
   const Window w{0, 0, 97, 53};
-  const Present present = noise_present(w, noise, one);
-  RecursiveParameters recursive;
-  recursive.sample_filter = SampleFilter::gaussian;
-  const History h = next_history(present, {}, recursive, {}, one);
   const glm::dvec2 jitter(-0.4, 0.3);
-  EXPECT_TRUE(same_bits(accumulate(present, h, recursive, {}, jitter, 1, {}, one).history.color,
-                        accumulate(present, h, recursive, {}, jitter, 1, {}, many).history.color));
+  for (const TwinCase& c : all_cases()) {
+    const Present present = noise_present(w, c.noise, one);
+    const History h = next_history(present, {}, c.recursive, c.rectify, one);
+    const Accumulated a = accumulate(present, h, c.recursive, c.rectify, jitter, 1, kAll, one);
+    const Accumulated b = accumulate(present, h, c.recursive, c.rectify, jitter, 1, kAll, many);
+    EXPECT_TRUE(same_bits(a.history.color, b.history.color)) << c.name;
+    EXPECT_EQ(a.counts.rejected, b.counts.rejected) << c.name;
+    EXPECT_EQ(a.counts.restarted, b.counts.restarted) << c.name;
+  }
 }
 
 TEST(Accumulate, ConstantInConstantOutExactly) {
   Workers workers(1);
   const Window w{0, 0, 19, 11};
   for (const float value : {1.0f, 0.1f, 3.0e-39f, 1e-30f, 65504.0f, 1e30f, 3e38f, -0.7f, 0.0f})
-    for (const TwinCase& c : twin_cases()) {
+    for (const TwinCase& c : all_cases()) {
       const glm::vec4 color(value, value * 0.3f, value * 0.77f, 1.0f);
       Present present = flat_present(w, color, workers);
       present.motion = noise_present(w, c.noise, workers).motion;
@@ -300,7 +377,7 @@ TEST(Accumulate, BadPixelsKeepTheirHistoryAndSpreadNowhere) {
 TEST(Accumulate, ExtremeValuesStayFinite) {
   Workers workers(1);
   const Window w{0, 0, 23, 17};
-  for (const TwinCase& c : twin_cases()) {
+  for (const TwinCase& c : all_cases()) {
     Present p = noise_present(w, c.noise, workers);
     const float values[] = {FLT_MAX, -FLT_MAX, 1.7e38f, 65504.0f, -65504.0f, 1e30f, 1e-38f, 1e-45f, -0.0f, 0.0f};
     for (int y = 0; y < w.y1; ++y)
@@ -322,7 +399,7 @@ TEST(Accumulate, SmallestWindows) {
   Workers workers(3);
   for (const Window w :
        {Window{0, 0, 0, 0}, Window{4, 4, 5, 5}, Window{0, 0, 1, 9}, Window{-2, 0, 7, 1}, Window{0, 0, 2, 2}})
-    for (const TwinCase& c : twin_cases()) {
+    for (const TwinCase& c : all_cases()) {
       if (w.empty()) {
         EXPECT_TRUE(accumulate(Present{}, {}, c.recursive, c.rectify, {}, 1, {}, workers).history.color.empty());
         continue;

@@ -65,6 +65,54 @@ TEST(Subjects, PlainNames) {
   EXPECT_EQ(found[0].forward_encoding.sign_y, -1);
 }
 
+TEST(Subjects, IdAndNormalAreToldByTheirNames) {
+  struct Case {
+    std::vector<std::string> channels;
+    std::string id, normal;
+  };
+  const std::vector<std::string> rgba = {"R", "G", "B", "A"};
+  for (const Case& c :
+       std::vector<Case>{{{"objectId"}, "objectId", "-"},
+                         {{"id"}, "id", "-"},
+                         {{"IndexMA.X", "IndexOB.X"}, "IndexOB.X", "-"},  // an object before a material
+                         {{"CryptoMaterial00.r", "CryptoObject00.r", "CryptoObject00.g", "CryptoObject01.r"},
+                          "CryptoObject00.r",
+                          "-"},
+                         {{"CryptoObject01.r"}, "-", "-"},  // not the first rank
+                         {{"Normal.X", "Normal.Y", "Normal.Z"}, "-", "Normal.X"},
+                         {{"N.R", "N.G", "N.B"}, "-", "N.R"},
+                         {{"nx", "ny", "nz"}, "-", "nx"},
+                         {{"Normal.X", "Normal.Y"}, "-", "-"},  // not whole
+                         {{"P.X", "P.Y", "P.Z", "mist.Z"}, "-", "-"}}) {
+    std::vector<std::string> channels = rgba;
+    channels.insert(channels.end(), c.channels.begin(), c.channels.end());
+    std::vector<FileHeader> files = {file_of({part_of(channels)})};
+    for (Channel& channel : files[0].parts[0].channels)
+      if (channel.name == "objectId") channel.type = PixelType::uint32;
+    const Subject s = find(files).front();
+    EXPECT_EQ(name_of_ref(files, s.id), c.id);
+    EXPECT_EQ(s.normal ? name_of_ref(files, (*s.normal)[0]) : "-", c.normal);
+  }
+}
+
+TEST(Subjects, MarksAndMasksMayBeMapped) {
+  std::vector<FileHeader> files = {file_of({part_of({"R", "G", "B", "who", "m1", "m2", "a.u", "a.v", "a.w"})})};
+  files[0].parts[0].channels[3].type = PixelType::uint32;
+  RoleRequest request;
+  request.map = {{"id", "who"},       {"reactive", "m1"},  {"responsive", "m2"},
+                 {"normal.x", "a.u"}, {"normal.y", "a.v"}, {"normal.z", "a.w"}};
+  const Subject s = find(files, request).front();
+  EXPECT_EQ(name_of_ref(files, s.id), "who");
+  EXPECT_EQ(name_of_ref(files, s.reactive), "m1");
+  EXPECT_EQ(name_of_ref(files, s.responsive), "m2");
+  ASSERT_TRUE(s.normal);
+  EXPECT_EQ(name_of_ref(files, (*s.normal)[2]), "a.w");
+  request.map = {{"normal.x", "a.u"}};
+  EXPECT_NE(message_of([&] { find(files, request); }).find("normal.y"), std::string::npos);
+  request.map = {{"reactive", "who"}};  // a mask is a number, an id is not
+  EXPECT_NE(message_of([&] { find(files, request); }).find("integers"), std::string::npos);
+}
+
 TEST(Subjects, DepthIsNotWhatOnlyEndsInZ) {
   const std::vector<FileHeader> files = {file_of({part_of({"V L.Combined.R",
                                                            "V L.Combined.G",

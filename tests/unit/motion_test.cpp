@@ -100,6 +100,31 @@ TEST(Motion, DilationTakesTheDepthOfTheChosenPixel) {
   }
 }
 
+TEST(Motion, DilationCarriesIdAndNormalWithTheVector) {
+  Workers workers(1);
+  const Window w{-2, 5, 11, 14};
+  for (const Dilation dilation : {Dilation::none, Dilation::nearest, Dilation::longest}) {
+    const Present p = test::noise_present(w, {4, 0, 5, 0.2, true, 1}, workers);
+    // Each pixel's own place as its id and its normal: what comes out tells which pixel lent its vector.
+    SurfaceMarks marks{Plane<std::uint32_t>(w), Plane<glm::vec3>(w)};
+    for (int y = w.y0; y < w.y1; ++y)
+      for (int x = w.x0; x < w.x1; ++x) {
+        marks.id.at(x, y) = std::uint32_t((y + 10) * 1000 + x + 10);
+        marks.normal.at(x, y) = glm::vec3(float(x), float(y), 1.0f);
+      }
+    const DilatedMotion d = dilate_motion(p.motion.clone(), p.depth, dilation, workers, std::move(marks));
+    for (int y = w.y0; y < w.y1; ++y)
+      for (int x = w.x0; x < w.x1; ++x) {
+        const int lx = int(d.marks.id.at(x, y) % 1000) - 10, ly = int(d.marks.id.at(x, y) / 1000) - 10;
+        ASSERT_TRUE(std::abs(lx - x) <= 1 && std::abs(ly - y) <= 1 && w.contains(lx, ly));
+        const glm::vec2 lent = p.motion.at(lx, ly), got = d.motion.at(x, y);
+        ASSERT_TRUE(lent == got || (std::isnan(lent.x) && std::isnan(got.x)));
+        ASSERT_EQ(d.depth.at(x, y), p.depth.at(lx, ly));
+        ASSERT_EQ(d.marks.normal.at(x, y), glm::vec3(float(lx), float(ly), 1.0f));
+      }
+  }
+}
+
 TEST(Motion, InvertingAUniformMoveGivesItsOpposite) {
   const Window before{0, 0, 20, 10}, now{6, 0, 26, 10};
   for (const glm::vec2 move : {glm::vec2(3, 0), glm::vec2(2.5f, -0.75f), glm::vec2(0.0f)}) {
@@ -124,6 +149,57 @@ TEST(Motion, InvertingLetsTheNearestSurfaceWinAndIgnoresBadVectors) {
   EXPECT_EQ(backward.at(2, 1), glm::vec2(-1, -1));  // uncovered
   EXPECT_EQ(backward.at(9, 1), glm::vec2(-1, -1));
   EXPECT_EQ(backward.at(5, 0), glm::vec2(0.0f));
+}
+
+TEST(Motion, InvertingIsTheSameInBothDirectionsOfTimeAndLeavesHoles) {
+  const Window w{0, 0, 16, 5};
+  // A near thing at columns 4..6 of the next frame came from 2 pixels to the left; the rest stood still.
+  Plane<glm::vec2> backward(w, 0, glm::vec2(0.0f));
+  Plane<float> depth_there(w, 0, 9.0f), depth_here(w, 0, 9.0f);
+  for (int y = 0; y < 5; ++y)
+    for (int x = 4; x <= 6; ++x) {
+      backward.at(x, y) = glm::vec2(-2, 0);
+      depth_there.at(x, y) = 1;
+      depth_here.at(x - 2, y) = 1;
+    }
+  const auto holes = [&] { return Plane<glm::vec2>(w, 0, glm::vec2(kNaN)); };
+  const Plane<glm::vec2> forward = invert_motion(backward, depth_there, depth_here, 0.05, holes());
+  for (int x = 0; x < 16; ++x) {
+    const glm::vec2 v = forward.at(x, 2);
+    if (x >= 2 && x <= 4)
+      EXPECT_EQ(v, glm::vec2(2, 0)) << x;
+    else if (x == 5 || x == 6)
+      EXPECT_TRUE(std::isnan(v.x)) << x << ": hidden in the next frame";
+    else
+      EXPECT_EQ(v, glm::vec2(0.0f)) << x;
+  }
+  // Background that lands where something else is seen did not come from there.
+  depth_there = Plane<float>(w, 0, 9.0f);
+  EXPECT_TRUE(std::isnan(invert_motion(backward, depth_there, depth_here, 0.05, holes()).at(3, 2).x));
+  EXPECT_FALSE(std::isnan(invert_motion(backward, depth_there, {}, 0.05, holes()).at(3, 2).x)) << "not tested";
+}
+
+TEST(Motion, VectorsThatDoNotLeadBackAreRejected) {
+  Workers workers(2);
+  const Window w{0, 0, 12, 3};
+  Plane<glm::vec2> motion(w, 0, glm::vec2(2, 0)), back(w, 0, glm::vec2(-2, 0));
+  back.at(5, 1) = glm::vec2(-2.4f, 0);      // misses by less than half a pixel
+  back.at(6, 1) = glm::vec2(-2.6f, 0);      // by more
+  back.at(7, 1) = glm::vec2(kNaN);          // unknown
+  motion.at(0, 0) = glm::vec2(kNaN, kNaN);  // stays what it is
+  motion.at(1, 0) = glm::vec2(1e30f, 0);
+  reject_one_way_motion(motion, back, 0.5, workers);
+  EXPECT_EQ(motion.at(3, 1), glm::vec2(2, 0));
+  EXPECT_TRUE(std::isnan(motion.at(4, 1).x));
+  EXPECT_EQ(motion.at(5, 1), glm::vec2(2, 0));
+  EXPECT_EQ(motion.at(11, 1), glm::vec2(2, 0)) << "it leaves the window";
+  EXPECT_EQ(motion.at(1, 0).x, 1e30f);
+  // Long vectors may miss by a hundredth of their length.
+  Plane<glm::vec2> fast(w, 0, glm::vec2(0, 0)), other(w, 0, glm::vec2(0, 0));
+  fast.at(0, 1) = glm::vec2(11, 0);
+  other.at(11, 1) = glm::vec2(-11.12f, 0);
+  reject_one_way_motion(fast, other, 0.01, workers);
+  EXPECT_EQ(fast.at(0, 1), glm::vec2(11, 0));
 }
 
 }  // namespace

@@ -42,9 +42,12 @@ TEST(Knobs, AreIndependent) {
   for (const Knob& knob : table) {
     Parameters parameters;
     const std::string standard = knob.value.show(parameters);
-    std::string other = standard == "0.5" ? "0.25" : "0.5";
+    std::string other;
+    for (const char* number : {"0.5", "0.25", "7", "9"})
+      if (Parameters tried; other.empty() && number != standard && knob.value.read(tried, number)) other = number;
     for (const Choice& choice : knob.value.choices)
       if (choice.word != standard) other = choice.word;
+    if (!knob.value.read(parameters, other)) other = "2";  // whole numbers only
     ASSERT_TRUE(knob.value.read(parameters, other)) << knob.name;
     for (const Knob& each : table)
       EXPECT_EQ(each.value.show(parameters), &each == &knob ? other : each.value.show(Parameters{})) << each.name;
@@ -70,6 +73,28 @@ TEST(Presets, Salvi) {
   EXPECT_EQ(p.rectify.rule, BoxRule::clip);
   EXPECT_EQ(p.motion.dilation, Dilation::longest);
   EXPECT_NE(p.recursive.history_filter, HistoryFilter::bilinear);
+}
+
+TEST(Presets, RecipesOfTheSources) {
+  const Parameters lopez = preset_parameters(*find_preset("lopez"));
+  EXPECT_EQ(lopez.recursive.history_filter, HistoryFilter::catmull_rom);
+  EXPECT_EQ(lopez.recursive.alpha_rule, AlphaRule::fixed);
+  EXPECT_EQ(lopez.motion.dilation, Dilation::nearest);
+  EXPECT_EQ(lopez.rectify.gamma, 1.5);
+  EXPECT_EQ(lopez.rectify.anchor, BoxAnchor::center);
+  EXPECT_EQ(lopez.recursive.weight.weighing, Weighing::luminance);
+  const Parameters crytek2 = preset_parameters(*find_preset("crytek2"));
+  EXPECT_EQ(crytek2.recursive.alpha, 0.5);
+  EXPECT_EQ(crytek2.rectify.box, Box::none);
+  EXPECT_EQ(crytek2.recursive.reject.speed, 1);
+  const Parameters inside = preset_parameters(*find_preset("inside"));
+  EXPECT_EQ(inside.recursive.unjitter, Unjitter::bilinear);
+  EXPECT_EQ(inside.recursive.history_filter, HistoryFilter::bilinear);
+  EXPECT_EQ(inside.motion.dilation, Dilation::nearest);
+  EXPECT_EQ(inside.rectify.anchor, BoxAnchor::center);
+  EXPECT_EQ(inside.rectify.box, Box::rounded);
+  EXPECT_EQ(inside.recursive.weight.feedback, Feedback::luma);
+  EXPECT_EQ(inside.fallback.motion_blur, MotionBlur::own);
 }
 
 TEST(Presets, NamesAreUniqueAndValuesAreRead) {

@@ -123,9 +123,30 @@ TEST(Plan, WhatCannotBeDoneIsRefusedWithTheRemedy) {
   EXPECT_TRUE(make_plan(partly, weights, {}, 2).use_jitter);
   partly.frames_with_jitter = 2;
   EXPECT_NE(message_of([&] { make_plan(partly, weights, {}, 2); }).find("2 of 3"), std::string::npos);
+  Parameters unjitter, both = weights;
+  unjitter.recursive.unjitter = both.recursive.unjitter = Unjitter::bilinear;
+  EXPECT_NE(message_of([&] { make_plan(sequence(kFull), unjitter, {}, 2); }).find("--unjitter none"),
+            std::string::npos);
+  partly.frames_with_jitter = 3;
+  EXPECT_TRUE(pass(make_plan(partly, unjitter, {}, 2), "unjitter").runs);
+  EXPECT_NE(message_of([&] { make_plan(partly, both, {}, 2); }, ExitCode::usage).find("--sample-filter"),
+            std::string::npos);
   OutputRequest output;
   output.aovs = {"banana"};
   message_of([&] { make_plan(sequence(kFull), {}, output, 2); }, ExitCode::usage);
+}
+
+TEST(Plan, FiltersThatAmplifyAreRefusedWithTheirFigures) {
+  Parameters sharp;
+  sharp.recursive.history_filter = HistoryFilter::cubic;
+  EXPECT_TRUE(pass(make_plan(sequence(kFull), sharp, {}, 2), "history").runs);  // Catmull-Rom's constants
+  sharp.recursive.cubic_c = 0.75;
+  const std::string text = message_of([&] { make_plan(sequence(kFull), sharp, {}, 2); }, ExitCode::usage);
+  for (const char* part : {"cubic-c 0.75", "1.029", "0.055", "bspline5"})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  sharp.recursive.cubic_b = 1;  // so soft that nothing is amplified
+  sharp.recursive.cubic_c = 0;
+  EXPECT_TRUE(pass(make_plan(sequence(kFull), sharp, {}, 2), "history").runs);
 }
 
 TEST(Plan, MemoryFollowsTheFormula) {
@@ -139,6 +160,39 @@ TEST(Plan, MemoryFollowsTheFormula) {
   output = {};
   output.keep_channels = false;
   EXPECT_LT(make_plan(sequence(kFull), {}, output, 2).bytes, make_plan(sequence(kFull), {}, {}, 2).bytes);
+}
+
+TEST(Plan, TwoSidedSaysHowFarItReachesAndWhatWaits) {
+  Parameters parameters;
+  parameters.accumulator = Accumulator::two_sided;
+  const Plan both = make_plan(sequence(kFull), parameters, {}, 2), back = make_plan(sequence(kFull), {}, {}, 2);
+  EXPECT_NE(pass(both, "past and future").reason.find("44 frames"), std::string::npos);
+  EXPECT_NE(pass(both, "past and future").reason.find("in memory"), std::string::npos);
+  EXPECT_TRUE(both.use_forward);
+  EXPECT_FALSE(both.use_depth);
+  const std::vector<std::string> read = names_read(sequence(kFull), both);
+  EXPECT_NE(std::find(read.begin(), read.end(), "forward.v"), read.end());
+  // Color, weight and spread of the future of 44 frames, 24 B per pixel each.
+  EXPECT_GE(both.bytes, back.bytes + std::size_t(44) * 24 * 1000 * 1000);
+  EXPECT_GT(both.seconds_per_frame, 2 * back.seconds_per_frame);
+  OutputRequest spilled;
+  spilled.spill_folder = "elsewhere";
+  EXPECT_LT(make_plan(sequence(kFull), parameters, spilled, 2).bytes, back.bytes + std::size_t(100) * 1000 * 1000);
+  message_of([&] { make_plan(sequence(kFull), {}, spilled, 2); }, ExitCode::usage);
+  // One direction of vectors is inverted, with depth where there is one.
+  EXPECT_TRUE(make_plan(sequence(kForward), parameters, {}, 2).use_depth);
+  // A single frame has neighbors to look at.
+  EXPECT_TRUE(pass(make_plan(sequence(kFull, 1), parameters, {}, 2), "rectify").runs);
+  // Planes that it cannot fill are refused, and not part of "all".
+  const auto named = [](const char* name) {
+    OutputRequest output;
+    output.aovs = {name};
+    return output;
+  };
+  message_of([&] { make_plan(sequence(kFull), parameters, named("prediction"), 2); }, ExitCode::usage);
+  message_of([&] { make_plan(sequence(kFull), {}, named("count-future"), 2); }, ExitCode::usage);
+  for (const Aov* aov : planned_aovs(named("all"), Accumulator::two_sided)) EXPECT_NE(aov->name, "prediction");
+  for (const Aov* aov : planned_aovs(named("all"), Accumulator::recursive)) EXPECT_NE(aov->name, "count-past");
 }
 
 TEST(Plan, TimeGrowsWithPixelsAndFallsWithThreads) {
@@ -165,7 +219,8 @@ TEST(Describe, JsonIsValidAndHoldsThePlan) {
   ASSERT_EQ(channels.items.size(), kFull.size());
   EXPECT_EQ(channels.items[4].find("role")->text, "depth");
   EXPECT_FALSE(channels.items[4].find("read")->boolean);
-  EXPECT_EQ(channels.items[9].find("role")->kind, JsonValue::Kind::null);
+  EXPECT_EQ(channels.items[9].find("role")->text, "id");  // found by its name, read only by what asks for it
+  EXPECT_FALSE(channels.items[9].find("read")->boolean);
   EXPECT_EQ(text, describe_json(info, plan, statistics));
 }
 

@@ -1,0 +1,74 @@
+// One frame as the gather sees it.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "gather/surface_blocks.h"
+#include "resolve/present.h"
+
+namespace varve {
+
+/// Luminance of a pixel, and the least and greatest of its 3x3 neighbors; own is NaN where several surfaces meet.
+struct LightRange {
+  float own, low, high;
+};
+
+/// A frame of the window. `backward` and `forward` are undilated; either is NaN where nothing is known. All planes have
+/// the window of present->color.
+struct GatherSource {
+  const Present* present = nullptr;
+  glm::dvec2 jitter{0};                            ///< sample position minus pixel centre, pixels
+  const Plane<glm::vec2>* backward = nullptr;      ///< to the frame before; null: at rest
+  const Plane<glm::vec2>* forward = nullptr;       ///< to the frame after; null: at rest
+  const Plane<LightRange>* light_range = nullptr;  ///< local_range(); null: no test of it
+  const Plane<float>* local_light = nullptr;       ///< mean luminance around each pixel on its surface; null: no gain
+
+  const Window& window() const { return present->color.window(); }
+  const SurfaceBlocks* blocks = nullptr;  ///< null: searches look everywhere
+  /// Position of the sample of pixel (x, y).
+  glm::dvec2 position(int x, int y) const { return {x + 0.5 + jitter.x, y + 0.5 + jitter.y}; }
+  /// Color and companion of a pixel given as y * 65536 + x from the window's corner.
+  const glm::vec4& color(std::uint32_t pixel) const { return packed(present->color, pixel); }
+  const glm::vec4& companion(std::size_t k, std::uint32_t pixel) const { return packed(present->companions[k], pixel); }
+
+ private:
+  static const glm::vec4& packed(const Plane<glm::vec4>& plane, std::uint32_t pixel) {
+    return plane.row(plane.window().y0 + int(pixel >> 16))[pixel & 0xFFFF];
+  }
+};
+
+/// What a sample shows, as far as the files tell: an object and a distance.
+struct SurfaceKey {
+  std::uint32_t id = 0;  ///< 0 where the files have no ids
+  float depth = 0;       ///< 0 where the files have no depth
+};
+
+/// The relative difference of depth up to which two samples may be the same surface. With ids it only has to split an
+/// object from its own far side; without, it has to split everything.
+struct SurfaceTest {
+  bool ids = false, depths = false;
+  float tolerance = 0.15f;
+
+  bool same(SurfaceKey a, SurfaceKey b) const { return (!ids || a.id == b.id) && (!depths || near(a.depth, b.depth)); }
+  /// False where a block has no sample that could be the same.
+  bool may_be_in(SurfaceKey key, const SurfaceBlock& b) const {
+    return (!ids || (b.ids & id_bit(key.id)) != 0) && (!depths || near(key.depth, b.near) || near(key.depth, b.far) ||
+                                                       (key.depth >= b.near && key.depth <= b.far));
+  }
+  bool near(float a, float b) const {
+    if (a == b) return true;  // both infinitely far as well
+    const float nearer = a < b ? a : b;
+    return std::fabs(a - b) <= tolerance * nearer;
+  }
+};
+
+inline SurfaceKey surface_at(const Present& p, int x, int y) {
+  return {p.id.empty() ? 0u : p.id.at(x, y), p.depth.empty() ? 0.0f : p.depth.at(x, y)};
+}
+
+}  // namespace varve

@@ -1,0 +1,226 @@
+#include "stages/find_cut.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+
+namespace varve {
+namespace {
+
+constexpr int kBlocksAcross = 22;
+constexpr int kQuantiles = 64;
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+// Blocks whose surroundings vary less than this in tone have nothing to compare.
+constexpr double kContrast = 0.01;
+// And those that vary less than this many times the noise of a block.
+constexpr double kAboveNoise = 2;
+// Correlation from which on two surroundings are the same thing.
+constexpr double kSame = 0.4;
+
+// Where a cut begins. Measured on the scenes of `varve synth`: see tests/unit/find_cut_test.cpp.
+constexpr double kUnexplained = 0.5, kUnexplainedAlone = 0.75, kDistance = 0.03, kDistanceWithoutVectors = 0.1,
+                 kDistanceAlone = 0.3, kTurned = 30, kJudged = 0.05;
+
+/// Means over the valid pixels of the blocks: luma, red and green share; NaN where no pixel is valid.
+struct Blocks {
+  Plane<float> luma, red, green;
+  Plane<float> luma_error;  ///< standard error of the mean: noise, and detail finer than a block
+};
+
+Blocks block_means(const Present& p, int block, Workers& workers) {
+  const Window& w = p.color.window();
+  const Window grid{0, 0, (w.width() + block - 1) / block, (w.height() + block - 1) / block};
+  Blocks b{Plane<float>(grid, 0, kNaN), Plane<float>(grid, 0, kNaN), Plane<float>(grid, 0, kNaN),
+           Plane<float>(grid, 0, 0.0f)};
+  workers.for_rows(0, grid.y1, [&](int by) {
+    for (int bx = 0; bx < grid.x1; ++bx) {
+      double r = 0, g = 0, bl = 0, mean = 0, m2 = 0;
+      int n = 0;
+      for (int y = w.y0 + by * block; y < std::min(w.y1, w.y0 + (by + 1) * block); ++y)
+        for (int x = w.x0 + bx * block; x < std::min(w.x1, w.x0 + (bx + 1) * block); ++x) {
+          if (!(p.valid.at(x, y) > 0)) continue;
+          const glm::vec4& c = p.color.at(x, y);
+          const glm::dvec3 light = glm::max(glm::dvec3(c), 0.0);
+          r += light.r, g += light.g, bl += light.b;
+          const double luma = 0.2126 * light.r + 0.7152 * light.g + 0.0722 * light.b, step = luma - mean;
+          mean += step / ++n;
+          m2 += step * (luma - mean);
+        }
+      if (n == 0) continue;
+      const double sum = r + g + bl;
+      b.luma.at(bx, by) = float(std::min(mean, 1e38));
+      b.luma_error.at(bx, by) = float(std::min(std::sqrt(m2) / n, 1e38));
+      b.red.at(bx, by) = sum > 0 ? float(r / sum) : 1.0f / 3;
+      b.green.at(bx, by) = sum > 0 ? float(g / sum) : 1.0f / 3;
+    }
+  });
+  return b;
+}
+
+std::vector<float> sorted_values(const Plane<float>& plane) {
+  std::vector<float> values;
+  const Window& w = plane.window();
+  for (int y = w.y0; y < w.y1; ++y)
+    for (int x = w.x0; x < w.x1; ++x)
+      if (std::isfinite(plane.at(x, y))) values.push_back(plane.at(x, y));
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+/// Mean distance of the quantiles (Wasserstein's, of order 1).
+double distance_of(const std::vector<float>& a, const std::vector<float>& b) {
+  if (a.empty() || b.empty()) return a.empty() == b.empty() ? 0 : 1;
+  const auto quantile = [](const std::vector<float>& v, int i) {
+    return double(v[std::min(v.size() - 1, (2 * std::size_t(i) + 1) * v.size() / (2 * kQuantiles))]);
+  };
+  double sum = 0;
+  for (int i = 0; i < kQuantiles; ++i) sum += std::abs(quantile(a, i) - quantile(b, i));
+  return sum / kQuantiles;
+}
+
+/// Tone at a position in blocks (integers at block centers); NaN outside.
+double tone_at(const FrameTrace& t, double x, double y) {
+  const Window& w = t.tone.window();
+  if (!(x >= 0 && y >= 0 && x <= w.x1 - 1 && y <= w.y1 - 1)) return double(kNaN);
+  const int x0 = int(x), y0 = int(y), x1 = std::min(x0 + 1, w.x1 - 1), y1 = std::min(y0 + 1, w.y1 - 1);
+  const double fx = x - x0, fy = y - y0;
+  const double top = double(t.tone.at(x0, y0)) * (1 - fx) + double(t.tone.at(x1, y0)) * fx;
+  const double bottom = double(t.tone.at(x0, y1)) * (1 - fx) + double(t.tone.at(x1, y1)) * fx;
+  return top * (1 - fy) + bottom * fy;
+}
+
+/// Deviations and correlation of the 3x3 blocks around one with what lies at the previous position; n < 9 where some
+/// has no partner.
+struct Comparison {
+  int n = 0;
+  double sigma_now = 0, sigma_before = 0, correlation = 0;
+};
+
+Comparison compare_block(const FrameTrace& before, const FrameTrace& now, int bx, int by, glm::dvec2 motion) {
+  // Block centers in display coordinates, then in the blocks of the frame before.
+  const double shift_x = (now.window.x0 - before.window.x0 + motion.x) / before.block;
+  const double shift_y = (now.window.y0 - before.window.y0 + motion.y) / before.block;
+  const double ratio = double(now.block) / before.block;
+  double a[9], b[9], mean_a = 0, mean_b = 0;
+  Comparison c;
+  for (int j = -1; j <= 1; ++j)
+    for (int i = -1; i <= 1; ++i) {
+      if (!now.tone.window().contains(bx + i, by + j)) return c;
+      const double x = (bx + i + 0.5) * ratio - 0.5 + shift_x, y = (by + j + 0.5) * ratio - 0.5 + shift_y;
+      const double present = double(now.tone.at(bx + i, by + j)), past = tone_at(before, x, y);
+      if (!(std::isfinite(present) && std::isfinite(past))) return c;
+      a[c.n] = present, b[c.n] = past;
+      mean_a += present / 9, mean_b += past / 9;
+      ++c.n;
+    }
+  double aa = 0, bb = 0, ab = 0;
+  for (int k = 0; k < 9; ++k) {
+    aa += (a[k] - mean_a) * (a[k] - mean_a);
+    bb += (b[k] - mean_b) * (b[k] - mean_b);
+    ab += (a[k] - mean_a) * (b[k] - mean_b);
+  }
+  c.sigma_now = std::sqrt(aa / 9);
+  c.sigma_before = std::sqrt(bb / 9);
+  c.correlation = aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
+  return c;
+}
+
+/// The rotation between two matrices with orthogonal axes, in degrees.
+double turned_between(const std::vector<double>& a, const std::vector<double>& b) {
+  double trace = 0, size_a = 0, size_b = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      trace += a[4 * i + k] * b[4 * i + k];
+      size_a += a[4 * i + k] * a[4 * i + k];
+      size_b += b[4 * i + k] * b[4 * i + k];
+    }
+  if (!(size_a > 0 && size_b > 0)) return 0;
+  const double cosine = (3 * trace / std::sqrt(size_a * size_b) - 1) / 2;
+  return std::isfinite(cosine) ? std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / 3.14159265358979323846 : 0;
+}
+
+void compare_blocks(const FrameTrace& before, const FrameTrace& now, const Present& present, CutEvidence& e) {
+  const Window& grid = now.tone.window();
+  const Window& w = now.window;
+  int judged = 0, lost = 0;
+  for (int by = 0; by < grid.y1; ++by)
+    for (int bx = 0; bx < grid.x1; ++bx) {
+      const int x = std::min(w.x1 - 1, w.x0 + bx * now.block + now.block / 2);
+      const int y = std::min(w.y1 - 1, w.y0 + by * now.block + now.block / 2);
+      const glm::dvec2 motion(e.with_vectors ? present.motion.at(x, y) : glm::vec2(0.0f));
+      if (!(std::isfinite(motion.x) && std::isfinite(motion.y))) continue;
+      const Comparison c = compare_block(before, now, bx, by, motion);
+      const double noise = kAboveNoise * double(now.error.at(bx, by));
+      if (c.n < 9 || !(std::max(c.sigma_now, c.sigma_before) > std::max(kContrast, noise))) continue;
+      ++judged;
+      // Structure on one side only is as unlike as can be.
+      if (!(c.correlation >= kSame)) ++lost;
+    }
+  e.judged = double(judged) / double(std::max<std::size_t>(1, grid.pixels()));
+  e.unexplained = judged > 0 ? double(lost) / judged : 0;
+}
+
+std::string in_words(const CutEvidence& e) {
+  char text[256];
+  std::snprintf(text, sizeof text, "%.0f %% of the picture %s, its colors differ by %.2f", 100 * e.unexplained,
+                e.with_vectors ? "is not what its vectors lead to" : "is not what stood there", e.distance);
+  std::string words = text;
+  if (e.turned > 0.5) {
+    std::snprintf(text, sizeof text, ", the camera turned by %.0f degrees", e.turned);
+    words += text;
+  }
+  return words;
+}
+
+}  // namespace
+
+FrameTrace trace_of(const Present& present, const Part& part, int frame, Workers& workers) {
+  FrameTrace t;
+  t.frame = frame;
+  t.window = present.color.window();
+  if (t.window.empty()) return t;
+  t.block = std::max(1, std::min(t.window.width(), t.window.height()) / kBlocksAcross);
+  Blocks blocks = block_means(present, t.block, workers);
+  const std::vector<float> lumas = sorted_values(blocks.luma);
+  const double median = lumas.empty() ? 0 : double(lumas[lumas.size() / 2]);
+  const Window& grid = blocks.luma.window();
+  t.tone = Plane<float>(grid);
+  t.error = Plane<float>(grid);
+  for (int y = 0; y < grid.y1; ++y)
+    for (int x = 0; x < grid.x1; ++x) {
+      const double l = double(blocks.luma.at(x, y)), sum = l + median;
+      t.tone.at(x, y) = sum == 0 ? 0.0f : float(l / sum);
+      t.error.at(x, y) = sum == 0 ? 0.0f : float(double(blocks.luma_error.at(x, y)) / sum * (median / sum));
+    }
+  t.tones = sorted_values(t.tone);
+  t.reds = sorted_values(blocks.red);
+  t.greens = sorted_values(blocks.green);
+  if (const Attribute* camera = part.attribute("worldToCamera"); camera && camera->numbers.size() == 16)
+    t.world_to_camera = camera->numbers;
+  return t;
+}
+
+CutEvidence judge_cut(const FrameTrace& before, const FrameTrace& now, const Present& present) {
+  CutEvidence e;
+  if (before.empty() || now.empty()) return e;
+  e.with_vectors = !present.motion.empty();
+  compare_blocks(before, now, present, e);
+  e.distance = distance_of(before.tones, now.tones) + distance_of(before.reds, now.reds) +
+               distance_of(before.greens, now.greens);
+  if (before.world_to_camera && now.world_to_camera)
+    e.turned = turned_between(*before.world_to_camera, *now.world_to_camera);
+  const double far = e.with_vectors ? kDistance : kDistanceWithoutVectors;
+  const bool lost = e.unexplained > kUnexplained &&
+                    (e.distance > far || e.turned > kTurned || (e.with_vectors && e.unexplained > kUnexplainedAlone));
+  // Flat pictures have nothing to follow; there only the colors tell.
+  e.cut = e.judged >= kJudged ? lost : e.distance > kDistanceAlone;
+  e.sentence = in_words(e);
+  return e;
+}
+
+}  // namespace varve

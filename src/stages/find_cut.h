@@ -1,0 +1,44 @@
+// Cuts by evidence: does the picture follow from the one before, or is it another shot?
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exr/file_header.h"
+#include "resolve/present.h"
+
+namespace varve {
+
+/// What of a frame tells whether the next one belongs to it: means of square blocks, about 22 along the shorter side.
+struct FrameTrace {
+  int frame = 0;
+  Window window;                                       ///< of the picture
+  int block = 1;                                       ///< edge of a block in pixels
+  Plane<float> error;                                  ///< standard error of the tone of a block
+  Plane<float> tone;                                   ///< L / (L + median L) per block: exposure does not matter
+  std::vector<float> tones, reds, greens;              ///< sorted, for distances of distributions: tone, r and g shares
+  std::optional<std::vector<double>> world_to_camera;  ///< 16 numbers, row major
+
+  bool empty() const { return tone.empty(); }
+};
+
+/// `part` gives the camera, where the attribute worldToCamera is there.
+FrameTrace trace_of(const Present& present, const Part& part, int frame, Workers& workers);
+
+/// What was found between two frames.
+struct CutEvidence {
+  double judged = 0;       ///< share of the blocks that have any structure to compare
+  double unexplained = 0;  ///< of those: share that does not look like what its vector leads to, whatever the light
+  double distance = 0;     ///< between the distributions of tone and hue, 0 and up (Wasserstein, summed)
+  double turned = 0;       ///< degrees between the cameras; 0 where none is known
+  bool with_vectors = false;
+  bool cut = false;
+  std::string sentence;  ///< the same in words
+};
+
+/// A cut is a picture that the vectors do not explain and that differs in its colors, or that they explain nowhere.
+/// Light that changes alters neither much: blocks are compared by the correlation of their surroundings.
+CutEvidence judge_cut(const FrameTrace& before, const FrameTrace& now, const Present& present);
+
+}  // namespace varve

@@ -1,0 +1,103 @@
+#include "stages/gather_frame.h"
+
+#include <algorithm>
+
+#include "gather/opposite_vectors.h"
+#include "gather/round_trip.h"
+#include "gather/shading_gain.h"
+
+namespace varve {
+namespace {
+
+constexpr double kRoundTrip = 0.05;  // px: an inverted vector that misses its sample by more is none
+
+/// The frames of one subject, with what is made for them.
+struct SubjectFrames {
+  const FrameWindow& window;
+  std::size_t subject;
+  std::size_t first, last;  // held, of one shot
+  const GatherParameters& parameters;
+  GatherMemory& memory;
+  SurfaceTest test;
+  Workers& workers;
+
+  const Present& present(std::size_t i) const { return window[i].presents[subject]; }
+
+  GatherSource bare(std::size_t i) const {
+    GatherSource s;
+    s.present = &present(i);
+    SurfaceBlocks& blocks = memory[i].blocks;
+    if (blocks.blocks.empty()) blocks = summarize_surfaces(present(i));
+    s.blocks = &blocks;
+    if (const auto& jitter = window[i].headers.jitter) s.jitter = {jitter->x, jitter->y};
+    return s;
+  }
+
+  /// Vectors to the neighbor `to`, from the file or turned round from the neighbor's own.
+  const Plane<glm::vec2>* vectors(std::size_t i, std::size_t to) const {
+    if (to < first || to > last) return nullptr;
+    const bool future = to > i;
+    const Plane<glm::vec2>&stored = future ? present(i).forward : present(i).motion,
+          &back = future ? present(to).motion : present(to).forward;
+    if (back.empty() || (!stored.empty() && !(parameters.return_tolerance > 0)))
+      return stored.empty() ? nullptr : &stored;
+    Plane<glm::vec2>& made = future ? memory[i].forward : memory[i].backward;
+    if (made.empty() && !stored.empty())
+      made = trusted_vectors(bare(i), stored, bare(to), back, test, parameters.return_tolerance, workers);
+    if (made.empty()) made = opposite_vectors(bare(i), bare(to), back, test, kRoundTrip, workers);
+    return &made;
+  }
+
+  GatherSource source(std::size_t i) const {
+    GatherSource s = bare(i);
+    if (i > first) s.backward = vectors(i, i - 1);
+    if (i < last) s.forward = vectors(i, i + 1);
+    const auto made = memory.find(i);
+    if (made != memory.end() && !made->second.light.empty())
+      s.local_light = &made->second.light, s.light_range = &made->second.range;
+    return s;
+  }
+
+  std::vector<GatherSource> sources(std::size_t begin, std::size_t end) const {
+    std::vector<GatherSource> list;
+    for (std::size_t i = begin; i <= end; ++i) list.push_back(source(i));
+    return list;
+  }
+};
+
+std::size_t back(std::size_t index, int frames, std::size_t first) {
+  return index - std::min(index - first, std::size_t(frames));
+}
+std::size_t ahead(std::size_t index, int frames, std::size_t last) {
+  return index + std::min(last - index, std::size_t(frames));
+}
+
+/// A first, cheap picture of a frame, good enough to measure light in: its direct neighbors only, few cells.
+void make_light(const SubjectFrames& frames, std::size_t i, const GatherParameters& parameters) {
+  if (!frames.memory[i].light.empty()) return;
+  GatherParameters pilot = parameters;
+  pilot.gain = false;
+  pilot.filter = SampleFilter::none;
+  pilot.cells = std::min(parameters.cells, 2);
+  const std::size_t begin = back(i, 1, frames.first), end = ahead(i, 1, frames.last);
+  const Accumulated picture = gather(frames.sources(begin, end), i - begin, pilot, frames.test, {}, frames.workers);
+  frames.memory[i].light =
+      local_light(picture.history.color, frames.present(i), frames.test, parameters.gain_window, frames.workers);
+  frames.memory[i].range = local_range(picture.history.color, frames.present(i), frames.test, frames.workers);
+}
+
+}  // namespace
+
+Accumulated gather_frame(const FrameWindow& window, std::size_t subject, std::size_t index, std::size_t first,
+                         std::size_t last, const GatherParameters& parameters, GatherMemory& memory,
+                         const DiagnosticsWanted& wanted, Workers& workers) {
+  std::erase_if(memory, [&](const auto& entry) { return entry.first < first || entry.first > last; });
+  const SubjectFrames frames{
+      window, subject, first, last, parameters, memory, surface_test(window[index].presents[subject]), workers};
+  const std::size_t begin = back(index, parameters.reach, first), end = ahead(index, parameters.reach, last);
+  if (parameters.gain)
+    for (std::size_t i = begin; i <= end; ++i) make_light(frames, i, parameters);
+  return gather(frames.sources(begin, end), index - begin, parameters, frames.test, wanted, workers);
+}
+
+}  // namespace varve

@@ -1,0 +1,30 @@
+// What the gather keeps between frames: vectors in both directions and the light of each frame, made once each.
+#pragma once
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include "gather/gather.h"
+#include "stages/frame_window.h"
+
+namespace varve {
+
+/// Of one subject in one frame.
+struct GatherFrame {
+  Plane<glm::vec2> backward, forward;  ///< made from the neighbor's or checked against them; empty: as in the file
+  SurfaceBlocks blocks;
+  Plane<float> light;       ///< local_light() of the pilot; empty until it is needed
+  Plane<LightRange> range;  ///< local_range() of it
+};
+
+/// By place in the schedule; frames that are passed are forgotten.
+using GatherMemory = std::map<std::size_t, GatherFrame>;
+
+/// Resolves the frame at `index` from the frames of `window` between `first` and `last`, all held; with a gain, the
+/// outermost frame on each side only serves the pilot of its neighbor.
+Accumulated gather_frame(const FrameWindow& window, std::size_t subject, std::size_t index, std::size_t first,
+                         std::size_t last, const GatherParameters& parameters, GatherMemory& memory,
+                         const DiagnosticsWanted& wanted, Workers& workers);
+
+}  // namespace varve

@@ -1,0 +1,96 @@
+#include "stages/side_run.h"
+
+#include <limits>
+#include <utility>
+
+#include "base/reject.h"
+
+namespace varve {
+namespace {
+
+/// Puts the motion of this side into the presents, and passes each to `step(present, state, jitter)`.
+template <class Step>
+void pass_subjects(SideRun& run, SourceFrame& source, const SharedVectors& vectors, const Parameters& parameters,
+                   Workers& workers, Step step) {
+  run.states.resize(source.presents.size());
+  std::optional<glm::dvec2> jitter;
+  if (source.headers.jitter) jitter = glm::dvec2(source.headers.jitter->x, source.headers.jitter->y);
+  for (std::size_t k = 0; k < source.presents.size(); ++k) {
+    Present& present = source.presents[k];
+    const FrameVectors* neighbor = run.neighbor ? &(*run.neighbor)[k] : nullptr;
+    DilatedMotion dilated = motion_to(run.side, (*vectors)[k], neighbor, parameters, workers);
+    present.motion = std::move(dilated.motion);
+    present.depth = std::move(dilated.depth);
+    present.id = std::move(dilated.marks.id);
+    present.normal = std::move(dilated.marks.normal);
+    run.states[k] = step(k, present, run.states[k], jitter);
+  }
+  run.neighbor = vectors;
+}
+
+}  // namespace
+
+SharedVectors take_vectors(SourceFrame& source) {
+  auto vectors = std::make_shared<std::vector<FrameVectors>>();
+  for (Present& present : source.presents)
+    vectors->push_back({std::move(present.motion),
+                        std::move(present.forward),
+                        std::move(present.depth),
+                        {std::move(present.id), std::move(present.normal)}});
+  return vectors;
+}
+
+DilatedMotion motion_to(Side side, const FrameVectors& here, const FrameVectors* neighbor, const Parameters& parameters,
+                        Workers& workers) {
+  const bool past = side == Side::past;
+  const Plane<glm::vec2>&own = past ? here.backward : here.forward, &opposite = past ? here.forward : here.backward;
+  SurfaceMarks marks{here.marks.id.clone(), here.marks.normal.clone()};
+  if (own.empty() && opposite.empty()) return {{}, here.depth.clone(), std::move(marks)};
+
+  const Plane<glm::vec2> none;
+  const Plane<glm::vec2>& back = !neighbor ? none : past ? neighbor->forward : neighbor->backward;
+  Plane<glm::vec2> motion;
+  if (!own.empty()) {
+    motion = own.clone();
+  } else {
+    motion = Plane<glm::vec2>(opposite.window(), 0, glm::vec2(std::numeric_limits<float>::quiet_NaN()));
+    if (!back.empty())
+      motion =
+          invert_motion(back, neighbor->depth, here.depth, parameters.recursive.depth_tolerance, std::move(motion));
+  }
+  // Before dilation: what leads nowhere may follow a neighbor that does not.
+  const double tolerance = parameters.two_sided.return_tolerance;
+  if (tolerance > 0 && !back.empty()) reject_one_way_motion(motion, back, tolerance, workers);
+  return dilate_motion(std::move(motion), here.depth, parameters.motion.dilation, workers, std::move(marks));
+}
+
+std::vector<StrictSide> pass_frame(SideRun& run, SourceFrame& source, const SharedVectors& vectors,
+                                   const StepOptions& options, Workers& workers) {
+  const Parameters& p = options.parameters;
+  std::vector<StrictSide> strict;
+  pass_subjects(run, source, vectors, p, workers,
+                [&](std::size_t, const Present& present, const History& state, std::optional<glm::dvec2> jitter) {
+                  SideStep step = accumulate_side(present, state, p.recursive, p.rectify, jitter, kRejectCut,
+                                                  options.wanted, workers);
+                  strict.push_back(std::move(step.strict));
+                  return std::move(step.state);
+                });
+  return strict;
+}
+
+std::vector<Accumulated> merge_frame(SideRun& run, SourceFrame& source, const SharedVectors& vectors,
+                                     const std::vector<StrictSide>& others, const StepOptions& options,
+                                     Workers& workers) {
+  const Parameters& p = options.parameters;
+  std::vector<Accumulated> resolved;
+  pass_subjects(run, source, vectors, p, workers,
+                [&](std::size_t k, const Present& present, const History& state, std::optional<glm::dvec2> jitter) {
+                  MergedStep step = accumulate_both(present, state, others[k], p.recursive, p.rectify, jitter,
+                                                    kRejectCut, options.wanted, workers);
+                  resolved.push_back(std::move(step.resolved));
+                  return std::move(step.state);
+                });
+  return resolved;
+}
+
+}  // namespace varve
