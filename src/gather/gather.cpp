@@ -192,7 +192,8 @@ Accumulated gather(std::span<const GatherSource> sources, std::size_t present, c
   context.change_limit = parameters.change_limit;
   context.test = test;
   context.kernel = cell_kernel_for(isa);
-  const TileGrid grid{w, context.axis.radius - 0.5 + 1.0 / kBinsPerPixel};
+  // Whole bins, as find_arrivals() reads them: else pixels at a tile's edge would miss samples that others see.
+  const TileGrid grid{w, (std::ceil((context.axis.radius - 0.5) * kBinsPerPixel) + 1) / kBinsPerPixel};
   std::vector<BlockLists> lists(sources.size());
   workers.for_each(sources.size(), [&](std::size_t i, int) { lists[i] = list_blocks(sources[i], fields[i], grid); });
 
