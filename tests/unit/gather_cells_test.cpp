@@ -21,7 +21,7 @@ TEST(GatherCells, TheExponentialIsOne) {
   for (std::size_t i = 0; i < position.size(); ++i) {
     const double x = std::max(double(-position[i] * position[i]), -40.0), truth = std::exp(x);
     // The product of x and 1/ln 2 is rounded to float before its integer part is taken off.
-    worst = std::max(worst, std::fabs(double(weight[i]) / truth - 1) / (1e-6 + 6e-8 * -x));
+    worst = std::max(worst, std::fabs(double(weight[i]) / truth - 1) / (4e-7 + 6e-8 * -x));
   }
   EXPECT_LT(worst, 1);
   RecordProperty("worst", std::to_string(worst));

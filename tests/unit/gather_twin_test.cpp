@@ -45,9 +45,9 @@ GatherParameters plain(int cells, SampleFilter filter) {
 TEST(GatherTwin, SameForAnyCellsAndFilter) {
   Workers workers(2);
   for (int cells = 1; cells <= 6; ++cells)
-    EXPECT_LT(worst_difference({.frames = 5}, 2, plain(cells, SampleFilter::none), workers), 1e-4) << cells;
-  for (const SampleFilter filter : {SampleFilter::tent, SampleFilter::blackman_harris})
-    EXPECT_LT(worst_difference({.frames = 5, .window = {0, 0, 21, 19}}, 2, plain(3, filter), workers), 1e-4);
+    EXPECT_LT(worst_difference({.frames = 5}, 2, plain(cells, SampleFilter::none), workers), 2e-6) << cells;
+  for (const SampleFilter filter : {SampleFilter::tent, SampleFilter::gaussian, SampleFilter::blackman_harris})
+    EXPECT_LT(worst_difference({.frames = 5, .window = {0, 0, 21, 19}}, 2, plain(3, filter), workers), 2e-6);
 }
 
 TEST(GatherTwin, SameWhateverTheFilesHave) {
@@ -59,7 +59,7 @@ TEST(GatherTwin, SameWhateverTheFilesHave) {
           EXPECT_LT(
               worst_difference({.frames = 6, .window_motion = motion, .ids = ids, .depths = depths, .jitter = jitter},
                                1, plain(4, SampleFilter::none), workers),
-              1e-4)
+              2e-6)
               << ids << depths << motion.x << jitter;
 }
 
