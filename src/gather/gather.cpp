@@ -109,7 +109,8 @@ void write_diagnostics(AccumulateDiagnostics& d, const PixelSums& r, const Pixel
   if (d.variance.empty()) return;
   const double mean = r.light / r.all.sum, spread = std::max(r.light_squares / r.all.sum - mean * mean, 0.0);
   const double squares = r.all.squares / (r.all.sum * r.all.sum);
-  d.variance.at(x, y) = float(spread * squares);
+  const double variance = spread * squares, limit = double(std::numeric_limits<float>::max());
+  d.variance.at(x, y) = float(variance < limit ? variance : limit);
   d.surfaces.at(x, y) = float(pixel.surfaces);
   d.removed.at(x, y) = float(r.removed / r.all.sum);
   d.gain.at(x, y) = float(r.trust / r.arrivals);
@@ -196,7 +197,8 @@ Accumulated gather(std::span<const GatherSource> sources, std::size_t present, c
   context.firefly_limit = parameters.firefly_limit;
   context.test = test;
   context.kernel = cell_kernel_for(isa);
-  const TileGrid grid{w, context.axis.radius - 0.5 + 1.0 / kBinsPerPixel};
+  // Whole bins, as find_arrivals() reads them: else pixels at a tile's edge would miss samples that others see.
+  const TileGrid grid{w, (std::ceil((context.axis.radius - 0.5) * kBinsPerPixel) + 1) / kBinsPerPixel};
   std::vector<BlockLists> lists(sources.size());
   workers.for_each(sources.size(), [&](std::size_t i, int) { lists[i] = list_blocks(sources[i], fields[i], grid); });
 
