@@ -109,7 +109,8 @@ void write_diagnostics(AccumulateDiagnostics& d, const PixelSums& r, const Pixel
   if (d.variance.empty()) return;
   const double mean = r.light / r.all.sum, spread = std::max(r.light_squares / r.all.sum - mean * mean, 0.0);
   const double squares = r.all.squares / (r.all.sum * r.all.sum);
-  d.variance.at(x, y) = float(spread * squares);
+  const double variance = spread * squares, limit = double(std::numeric_limits<float>::max());
+  d.variance.at(x, y) = float(variance < limit ? variance : limit);
   d.surfaces.at(x, y) = float(pixel.surfaces);
   d.removed.at(x, y) = float(r.removed / r.all.sum);
   d.gain.at(x, y) = float(r.trust / r.arrivals);

@@ -1,6 +1,7 @@
 #include "gather/round_trip.h"
 
 #include <cmath>
+#include <limits>
 
 #include "gather/carry.h"
 
@@ -24,7 +25,7 @@ void measure_round_trip(const GatherSource& source, const GatherSource& before, 
   workers.for_rows(w.y0, w.y1, [&](int y) {
     for (int x = w.x0; x < w.x1; ++x) {
       const double d = miss(source, x, y, glm::dvec2(source.backward->at(x, y)), before, *before.forward, test);
-      out.at(x, y) = d == d ? float(d) : 0.0f;
+      out.at(x, y) = d < double(std::numeric_limits<float>::max()) ? float(d) : 0.0f;
     }
   });
 }

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kHighlight = 1.35;      // ratio that noise of a first picture does not reach
 constexpr double kHighlightWidth = 0.1;  // beyond it, as a logarithm, where a sample counts half
+constexpr double kMostGain = 1e6;        // light out of nothing: no float overflows by it
 
 /// Sum of luminance and number of pixels.
 struct LightSum {
@@ -110,7 +111,7 @@ ShadingGain shading_gain(const GatherSource& source, int x, int y, const GatherS
     const double change = here > 0 ? double(here) / double(there) - 1 : 0;
     if (std::fabs(change) > dead_zone) {
       const double trusted = dead_zone / change;
-      const double gain = 1 + change * (1 - trusted * trusted);
+      const double gain = std::min(1 + change * (1 - trusted * trusted), kMostGain);
       const double off = std::log(gain) / half_weight;
       result = {float(gain), float(1 / (1 + off * off))};
     }
