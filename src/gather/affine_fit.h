@@ -5,8 +5,8 @@
 
 namespace varve {
 
-/// Weighted affine fit of a field: value = constant + slope * offset. The slope is held back a little, so that samples
-/// on a line, or a single one, give what they know. Wide is a vector of doubles.
+/// Weighted affine fit of a field: value = constant + slope * offset. Where the samples do not span the plane the slope
+/// is held back a little, so that samples on a line, or a single one, give what they know. Wide is a vector of doubles.
 template <class Wide>
 class AffineFit {
  public:
@@ -58,7 +58,7 @@ class AffineFit {
     const double mx = x_ / w_, my = y_ / w_;
     const Wide mean = v_ / w_;
     double sxx = xx_ / w_ - mx * mx, sxy = xy_ / w_ - mx * my, syy = yy_ / w_ - my * my;
-    const double ridge = 1e-3 * (sxx + syy) + 1e-6;
+    const double ridge = (spans_plane() ? 1e-9 : 1e-3) * (sxx + syy) + 1e-6;
     sxx += ridge, syy += ridge;
     const Wide cx = vx_ / w_ - mx * mean, cy = vy_ / w_ - my * mean;
     const double det = sxx * syy - sxy * sxy;
