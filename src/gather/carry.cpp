@@ -131,7 +131,8 @@ Carried carry(const GatherSource& source, bool to_future, const SurfaceTest& tes
       }
       if (!(rest.x == rest.x)) continue;
       out = glm::vec3(glm::dvec3(step, 0) + rest);
-      if (!(out.z == out.z)) out.z = key.depth;  // infinitely far: differences of infinities are no numbers
+      // Infinitely far: differences of infinities are no numbers; extrapolated: never behind the camera.
+      if (!(out.z > 0)) out.z = key.depth;
     }
   });
   return field;
