@@ -205,7 +205,8 @@ Accumulated gather(std::span<const GatherSource> sources, std::size_t present, c
   context.firefly_limit = parameters.firefly_limit;
   context.test = test;
   context.kernel = cell_kernel_for(isa);
-  const TileGrid grid{w, context.axis.radius - 0.5 + 1.0 / kBinsPerPixel};
+  // One bin beyond the filter, in whole bins: what a pixel meets must not hang on the tile it lies in.
+  const TileGrid grid{w, (std::ceil((context.axis.radius - 0.5) * kBinsPerPixel) + 1) / kBinsPerPixel};
   std::vector<BlockLists> lists(sources.size());
   workers.for_each(sources.size(), [&](std::size_t i, int) { lists[i] = list_blocks(sources[i], fields[i], grid); });
 
