@@ -1,6 +1,8 @@
 // A plane through scattered values.
 #pragma once
 
+#include <algorithm>
+
 #include <glm/vec2.hpp>
 
 namespace varve {
@@ -40,7 +42,7 @@ class AffineFit {
     const Wide mean = v_ / w_, cx = vx_ / w_ - mx * mean, cy = vy_ / w_ - my * mean;
     const Slope g = slope();
     const Wide left = vv_ / w_ - mean * mean - g.x * cx - g.y * cy;
-    return left.x + left.y;
+    return std::max(left.x + left.y, 0.0);
   }
   /// At the origin of the offsets.
   Wide value() const { return value({0, 0}); }

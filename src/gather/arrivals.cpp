@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "gather/shading_gain.h"
 
@@ -11,7 +12,22 @@ namespace {
 /// Tiles that a block's samples fall on.
 struct TileSpan {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // half open
+  bool wide() const { return x1 > x0 && y1 > y0 && std::int64_t(x1 - x0) * (y1 - y0) > kWide; }
+  static constexpr int kWide = 64;  // tiles
 };
+
+/// Tiles around samples that lie, without the jitter, between these positions.
+TileSpan tiles_around(const GatherSource& source, const TileGrid& grid, double low_x, double low_y, double high_x,
+                      double high_y) {
+  const double ox = 0.5 + source.jitter.x - grid.window.x0, oy = 0.5 + source.jitter.y - grid.window.y0;
+  const auto tile = [&](double at, int count) { return int(std::clamp(std::floor(at / kTile), -1.0, double(count))); };
+  const int columns = grid.columns(), rows = grid.rows();
+  TileSpan s{tile(low_x + ox - grid.margin, columns), tile(low_y + oy - grid.margin, rows),
+             tile(high_x + ox + grid.margin, columns) + 1, tile(high_y + oy + grid.margin, rows) + 1};
+  s.x0 = std::max(s.x0, 0), s.y0 = std::max(s.y0, 0);
+  s.x1 = std::min(s.x1, columns), s.y1 = std::min(s.y1, rows);
+  return s;
+}
 
 TileSpan tiles_of_block(const GatherSource& source, const Carried& field, const TileGrid& grid, int bx, int by) {
   const Window& w = source.window();
@@ -26,14 +42,66 @@ TileSpan tiles_of_block(const GatherSource& source, const Carried& field, const 
       low_y = std::min(low_y, ty), high_y = std::max(high_y, ty);
     }
   if (!(low_x <= high_x)) return {};
-  const double ox = 0.5 + source.jitter.x - grid.window.x0, oy = 0.5 + source.jitter.y - grid.window.y0;
-  const auto tile = [&](double at, int count) { return int(std::clamp(std::floor(at / kTile), -1.0, double(count))); };
-  const int columns = grid.columns(), rows = grid.rows();
-  TileSpan s{tile(low_x + ox - grid.margin, columns), tile(low_y + oy - grid.margin, rows),
-             tile(high_x + ox + grid.margin, columns) + 1, tile(high_y + oy + grid.margin, rows) + 1};
-  s.x0 = std::max(s.x0, 0), s.y0 = std::max(s.y0, 0);
-  s.x1 = std::min(s.x1, columns), s.y1 = std::min(s.y1, rows);
-  return s;
+  return tiles_around(source, grid, low_x, low_y, high_x, high_y);
+}
+
+/// The same sample by sample, as places in the grid: where vectors are noise the span is the whole picture, and lists
+/// of spans would grow with its square.
+void scattered_tiles(const GatherSource& source, const Carried& field, const TileGrid& grid, int bx, int by,
+                     std::vector<std::size_t>& tiles) {
+  tiles.clear();
+  const Window& w = source.window();
+  const int x1 = std::min(w.x0 + (bx + 1) * kTile, w.x1), y1 = std::min(w.y0 + (by + 1) * kTile, w.y1);
+  for (int y = w.y0 + by * kTile; y < y1; ++y)
+    for (int x = w.x0 + bx * kTile; x < x1; ++x) {
+      const glm::vec3& d = field.at(x, y);
+      if (!(d.x == d.x)) continue;
+      const double tx = x + double(d.x), ty = y + double(d.y);
+      const TileSpan s = tiles_around(source, grid, tx, ty, tx, ty);
+      for (int row = s.y0; row < s.y1; ++row)
+        for (int column = s.x0; column < s.x1; ++column) tiles.push_back(std::size_t(row * grid.columns() + column));
+    }
+  std::sort(tiles.begin(), tiles.end());
+  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+}
+
+/// Adds what arrives in the tile of `out` from a block of frame `f` whose first pixel is (x0, y0).
+void collect_block(std::span<const GatherSource> sources, std::size_t present, std::size_t f, const Carried& carried,
+                   int x0, int y0, const LightRule& light, const SurfaceTest& test, TileArrivals& out) {
+  const GatherSource& source = sources[f];
+  const Window& w = source.window();
+  const double ox = 0.5 + source.jitter.x - out.tile.x0, oy = 0.5 + source.jitter.y - out.tile.y0;
+  const float low = -float(out.around) / kBinsPerPixel, high = float(kTile) - low;
+  constexpr float most = std::numeric_limits<float>::max();
+  const int x1 = std::min(x0 + kTile, w.x1), y1 = std::min(y0 + kTile, w.y1);
+  for (int y = y0; y < y1; ++y) {
+    const glm::vec3* field = carried.row(y) - w.x0;
+    const float* valid = source.present->valid.row(y) - w.x0;
+    const glm::vec4* color = source.present->color.row(y) - w.x0;
+    const SurfaceRow surfaces(*source.present, y);
+    for (int x = x0; x < x1; ++x) {
+      const float ax = float(x + double(field[x].x) + ox), ay = float(y + double(field[x].y) + oy);
+      if (!(ax >= low && ay >= low && ax < high && ay < high && valid[x] > 0)) continue;
+      Arrival a{.x = ax,
+                .y = ay,
+                .depth = field[x].z,
+                .gain = 1,
+                .weight = 1,
+                .light = float(luminance(color[x])),
+                .id = surfaces[x].id,
+                .pixel = std::uint32_t(y - w.y0) << 16 | std::uint32_t(x - w.x0),
+                .frame = std::uint32_t(f)};
+      if (light.gain && f != present) {
+        const glm::dvec2 at = glm::dvec2(double(ax), double(ay)) + glm::dvec2(out.tile.x0, out.tile.y0);
+        const ShadingGain g =
+            shading_gain(source, x, y, sources[present], at, {a.id, a.depth}, test, light.dead_zone, light.weight);
+        a.gain = g.gain, a.weight = g.weight;
+        a.light = std::clamp(a.light * g.gain, -most, most);  // statistics of infinities are no numbers
+      }
+      out.unsorted.push_back(a);
+      out.bin_of.push_back(std::uint32_t(int((ay - low) * kBinsPerPixel) * out.bins + int((ax - low) * kBinsPerPixel)));
+    }
+  }
 }
 
 /// Sorts by bin, keeping the order of arrival within a bin.
@@ -100,10 +168,18 @@ BlockLists list_blocks(const GatherSource& source, const Carried& field, const T
     for (int bx = 0; bx < columns; ++bx) spans.push_back(tiles_of_block(source, field, grid, bx, by));
   BlockLists lists;
   const int tiles = grid.columns();
+  std::vector<std::size_t> scattered;
   const auto each = [&](auto&& use) {
-    for (std::size_t block = 0; block < spans.size(); ++block)
-      for (int y = spans[block].y0; y < spans[block].y1; ++y)
-        for (int x = spans[block].x0; x < spans[block].x1; ++x) use(block, std::size_t(y * tiles + x));
+    for (std::size_t block = 0; block < spans.size(); ++block) {
+      const TileSpan& span = spans[block];
+      if (span.wide()) {
+        scattered_tiles(source, field, grid, int(block) % columns, int(block) / columns, scattered);
+        for (const std::size_t tile : scattered) use(block, tile);
+        continue;
+      }
+      for (int y = span.y0; y < span.y1; ++y)
+        for (int x = span.x0; x < span.x1; ++x) use(block, std::size_t(y * tiles + x));
+    }
   };
   lists.begin.assign(std::size_t(tiles * grid.rows()) + 1, 0);
   each([&](std::size_t, std::size_t tile) { ++lists.begin[tile + 1]; });
@@ -128,44 +204,12 @@ void collect_arrivals(const TileGrid& grid, int column, int row, std::span<const
   out.bins = kTile * kBinsPerPixel + 2 * out.around;
   out.unsorted.clear();
   out.bin_of.clear();
-  const float low = -float(out.around) / kBinsPerPixel, high = float(kTile) - low;
   const std::size_t tile = std::size_t(row * grid.columns() + column);
-
   for (std::size_t f = 0; f < sources.size(); ++f) {
-    const GatherSource& source = sources[f];
-    const Window& w = source.window();
-    const double ox = 0.5 + source.jitter.x - out.tile.x0, oy = 0.5 + source.jitter.y - out.tile.y0;
-    for (std::uint32_t b = lists[f].begin[tile]; b < lists[f].begin[tile + 1]; ++b) {
-      const int x0 = w.x0 + int(lists[f].blocks[b] & 0xFFFF) * kTile, y0 = w.y0 + int(lists[f].blocks[b] >> 16) * kTile;
-      const int x1 = std::min(x0 + kTile, w.x1), y1 = std::min(y0 + kTile, w.y1);
-      for (int y = y0; y < y1; ++y) {
-        const glm::vec3* field = fields[f].row(y) - w.x0;
-        const float* valid = source.present->valid.row(y) - w.x0;
-        for (int x = x0; x < x1; ++x) {
-          const float ax = float(x + double(field[x].x) + ox), ay = float(y + double(field[x].y) + oy);
-          if (!(ax >= low && ay >= low && ax < high && ay < high && valid[x] > 0)) continue;
-          Arrival a{.x = ax,
-                    .y = ay,
-                    .depth = field[x].z,
-                    .gain = 1,
-                    .weight = 1,
-                    .light = float(luminance(source.present->color.at(x, y))),
-                    .id = source.present->id.empty() ? 0 : source.present->id.at(x, y),
-                    .pixel = std::uint32_t(y - w.y0) << 16 | std::uint32_t(x - w.x0),
-                    .frame = std::uint32_t(f)};
-          if (light.gain && f != present) {
-            const glm::dvec2 at = glm::dvec2(double(ax), double(ay)) + glm::dvec2(out.tile.x0, out.tile.y0);
-            const ShadingGain g =
-                shading_gain(source, x, y, sources[present], at, {a.id, a.depth}, test, light.dead_zone, light.weight);
-            a.gain = g.gain, a.weight = g.weight;
-            a.light *= g.gain;
-          }
-          out.unsorted.push_back(a);
-          out.bin_of.push_back(
-              std::uint32_t(int((ay - low) * kBinsPerPixel) * out.bins + int((ax - low) * kBinsPerPixel)));
-        }
-      }
-    }
+    const Window& w = sources[f].window();
+    for (std::uint32_t b = lists[f].begin[tile]; b < lists[f].begin[tile + 1]; ++b)
+      collect_block(sources, present, f, fields[f], w.x0 + int(lists[f].blocks[b] & 0xFFFF) * kTile,
+                    w.y0 + int(lists[f].blocks[b] >> 16) * kTile, light, test, out);
   }
   sort_into_bins(out);
   fit_surfaces(out, sources, test);

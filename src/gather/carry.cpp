@@ -36,13 +36,15 @@ void add_samples(AffineFit<typename Value<V>::Wide>& fit, const Plane<V>& field,
       const bool possible =
           !source.blocks ||
           test.may_be_in(key, source.blocks->blocks[std::size_t(row * source.blocks->columns + column)]);
-      for (int v = y; possible && v < below; ++v)
+      for (int v = y; possible && v < below; ++v) {
+        const SurfaceRow surfaces(*source.present, v);
+        const V* values = field.row(v) - w.x0;
         for (int u = x; u < right; ++u) {
-          const V value = field.at(u, v);
-          if (!(value.x == value.x) || !test.same(surface_at(*source.present, u, v), key)) continue;
+          if (!test.same(surfaces[u], key) || !(values[u].x == values[u].x)) continue;
           const glm::dvec2 d(u - at.x, v - at.y);
-          fit.add(d, 1 / (0.25 + d.x * d.x + d.y * d.y), typename Value<V>::Wide(value));
+          fit.add(d, 1 / (0.25 + d.x * d.x + d.y * d.y), typename Value<V>::Wide(values[u]));
         }
+      }
       x = right;
     }
     y = below;
@@ -62,16 +64,15 @@ typename Value<V>::Wide read_field(const Plane<V>& field, const GatherSource& so
   const int bx = int(std::floor(ux)), by = int(std::floor(uy));
   const double fx = ux - bx, fy = uy - by;
   if (bx >= w.x0 && by >= w.y0 && bx + 1 < w.x1 && by + 1 < w.y1) {
-    Wide corner[4];
-    bool all = true;
-    for (int k = 0; k < 4 && all; ++k) {
-      const int x = bx + (k & 1), y = by + (k >> 1);
-      corner[k] = Wide(field.at(x, y));
-      all = corner[k].x == corner[k].x && test.same(surface_at(p, x, y), key);
-    }
-    if (all) {
-      const Wide top = corner[0] + (corner[1] - corner[0]) * fx, bottom = corner[2] + (corner[3] - corner[2]) * fx;
-      return top + (bottom - top) * fy;
+    const SurfaceRow above(p, by), below(p, by + 1);
+    if (test.same(above[bx], key) && test.same(above[bx + 1], key) && test.same(below[bx], key) &&
+        test.same(below[bx + 1], key)) {
+      const V *upper = field.row(by) + (bx - w.x0), *lower = field.row(by + 1) + (bx - w.x0);
+      const Wide top = Wide(upper[0]) + (Wide(upper[1]) - Wide(upper[0])) * fx,
+                 bottom = Wide(lower[0]) + (Wide(lower[1]) - Wide(lower[0])) * fx;
+      const Wide value = top + (bottom - top) * fy;
+      // One of them cannot be followed: neither can what lies between, by them alone.
+      if (value.x == value.x) return value;
     }
   }
   AffineFit<Wide> fit;
@@ -131,7 +132,8 @@ Carried carry(const GatherSource& source, bool to_future, const SurfaceTest& tes
       }
       if (!(rest.x == rest.x)) continue;
       out = glm::vec3(glm::dvec3(step, 0) + rest);
-      if (!(out.z == out.z)) out.z = key.depth;  // infinitely far: differences of infinities are no numbers
+      // Infinitely far: differences of infinities are no numbers; extrapolated: never behind the camera.
+      if (!(out.z > 0)) out.z = key.depth;
     }
   });
   return field;

@@ -2,18 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace varve {
 namespace {
-
-/// Where a surface is in one frame, seen from the pixel.
-struct Track {
-  glm::dvec2 displacement{0};  // from that frame to the resolved one, pixels
-  float depth = 0;             // there
-  double distance = 1e300;     // of the arrival it was taken from, squared; 1e300: not seen
-  double weight = 1;           // how much its samples say
-  bool known() const { return distance < 1e299; }
-};
 
 Track track_of(const PixelContext& c, const Arrival& a, double distance) {
   const GatherSource& source = c.sources[a.frame];
@@ -72,12 +64,17 @@ void fill_gaps(std::vector<Track>& tracks) {
   }
 }
 
-}  // namespace
+/// The first pixel at or beyond a position; absurd ones stay in the range of an int.
+int first_pixel_at(double position) {
+  constexpr double most = std::numeric_limits<int>::max();
+  return int(std::clamp(std::ceil(position), -most, most));
+}
 
-void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arrivals, int x, int y,
-                      PixelScratch& scratch) {
+/// Where the surface of `arrivals` is in each frame.
+void track_surface(const PixelContext& c, std::span<const Arrival* const> arrivals, int x, int y,
+                   std::vector<Track>& tracks) {
   const std::size_t frames = c.sources.size();
-  std::vector<Track> tracks(frames);
+  tracks.assign(frames, {});
   const double mx = x - c.arrivals->tile.x0 + 0.5, my = y - c.arrivals->tile.y0 + 0.5;
   for (const Arrival* a : arrivals) {
     const double dx = double(a->x) - mx, dy = double(a->y) - my, distance = dx * dx + dy * dy;
@@ -93,7 +90,8 @@ void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arr
       if (s.motion[f].count() == 0) continue;
       if (!tracks[f].known()) {
         const glm::dvec3 v = s.motion[f].value(glm::dvec2(mx, my) - glm::dvec2(kTile / 2));
-        tracks[f] = {glm::dvec2(v), float(v.z), 0};
+        // Infinitely far there as here: a fit of infinities is no number.
+        tracks[f] = {glm::dvec2(v), std::isfinite(v.z) ? float(v.z) : arrivals.front()->depth, 0};
       }
       tracks[f].weight = outline_weight(s.motion[f]);
     }
@@ -104,55 +102,65 @@ void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arr
   for (std::size_t f = c.present + 1; f < frames; ++f)
     tracks[f].weight = std::min(tracks[f].weight, tracks[f - 1].weight);
   for (std::size_t f = c.present; f-- > 0;) tracks[f].weight = std::min(tracks[f].weight, tracks[f + 1].weight);
+}
 
-  scratch.px.clear(), scratch.py.clear(), scratch.pw.clear(), scratch.is_hit.clear();
+/// Samples of frame `f` that would arrive around the pixel if they moved with the surface.
+void look_along(const PixelContext& c, std::size_t f, const Track& t, std::uint32_t id, int x, int y,
+                PixelScratch& scratch) {
+  const GatherSource& source = c.sources[f];
+  const Window& w = source.window();
   const double reach = double(c.arrivals->around) / kBinsPerPixel;  // beyond the pixel's edge
-  for (std::size_t f = 0; f < frames; ++f) {
-    const GatherSource& source = c.sources[f];
-    const Window& w = source.window();
-    const Track& t = tracks[f];
-    // Samples of the frame that would arrive around the pixel if they moved with the surface.
-    const glm::dvec2 shift = t.displacement + source.jitter + glm::dvec2(0.5);
-    const int x0 = std::max(int(std::ceil(x - reach - shift.x)), w.x0),
-              y0 = std::max(int(std::ceil(y - reach - shift.y)), w.y0);
-    const int x1 = std::min(int(std::ceil(x + 1 + reach - shift.x)), w.x1),
-              y1 = std::min(int(std::ceil(y + 1 + reach - shift.y)), w.y1);
-    for (int v = y0; v < y1; ++v)
-      for (int u = x0; u < x1; ++u) {
-        if (!(source.present->valid.at(u, v) > 0)) continue;
-        const SurfaceKey key = surface_at(*source.present, u, v);
-        const bool hit = c.test.same(key, {arrivals.front()->id, t.depth});
-        if (!hit && !(key.depth > t.depth)) continue;
-        scratch.px.push_back(float(u + shift.x - x - 0.5));
-        scratch.py.push_back(float(v + shift.y - y - 0.5));
-        scratch.is_hit.push_back(hit);
-        scratch.pw.push_back(float(t.weight));
-      }
-  }
-  const std::size_t area = std::size_t(c.axis.count) * std::size_t(c.axis.count);
-  scratch.hits.assign(area, 0);
-  scratch.misses.assign(area, 0);
-  if (scratch.px.empty()) {
-    scratch.hits.assign(area, 1);
-    return;
-  }
-  const std::size_t size = (scratch.px.size() + kCellLanes - 1) / kCellLanes * kCellLanes,
-                    cells = std::size_t(c.axis.count);
+  const glm::dvec2 shift = t.displacement + source.jitter + glm::dvec2(0.5);
+  const int x0 = std::max(first_pixel_at(x - reach - shift.x), w.x0),
+            y0 = std::max(first_pixel_at(y - reach - shift.y), w.y0);
+  const int x1 = std::min(first_pixel_at(x + 1 + reach - shift.x), w.x1),
+            y1 = std::min(first_pixel_at(y + 1 + reach - shift.y), w.y1);
+  for (int v = y0; v < y1; ++v)
+    for (int u = x0; u < x1; ++u) {
+      if (!(source.present->valid.at(u, v) > 0)) continue;
+      const SurfaceKey key = surface_at(*source.present, u, v);
+      const bool hit = c.test.same(key, {id, t.depth});
+      if (!hit && !(key.depth > t.depth)) continue;
+      scratch.px.push_back(float(u + shift.x - x - 0.5));
+      scratch.py.push_back(float(v + shift.y - y - 0.5));
+      scratch.is_hit.push_back(hit);
+      scratch.pw.push_back(float(t.weight));
+    }
+}
+
+/// Sums of the hits and of the misses over the cells.
+void sum_coverage(const PixelContext& c, PixelScratch& scratch) {
+  lift_weights(scratch.pw);
+  const std::size_t cells = std::size_t(c.axis.count);
+  const std::size_t size = (scratch.px.size() + kCellLanes - 1) / kCellLanes * kCellLanes;
   scratch.is_hit.resize(size, 2);
   scratch.px.resize(size, 0), scratch.py.resize(size, 0), scratch.pw.resize(size, 0);
-  scratch.cx.resize(size * cells), scratch.cy.resize(size * cells);
-  const float scale = gaussian_scale(c, scratch.pw, kOutlineSpacing);
+  scratch.cx.resize(size * cells), scratch.cy.resize(size * cells), scratch.masked.resize(size * cells);
+  const float scale = gaussian_scale(c, scratch.pw, kOutlineSpacing, 0);
   const auto stride = std::ptrdiff_t(size);
   c.kernel->axis_weights(scratch.px.data(), int(size), c.axis.centers, c.axis.count, scale, scratch.cx.data(), stride);
   c.kernel->axis_weights(scratch.py.data(), int(size), c.axis.centers, c.axis.count, scale, scratch.cy.data(), stride);
   for (const std::uint8_t wanted : {1, 0}) {
-    scratch.masked.resize(size * cells);
     for (std::size_t j = 0; j < cells; ++j)
       for (std::size_t i = 0; i < size; ++i)
         scratch.masked[j * size + i] = scratch.is_hit[i] == wanted ? scratch.cy[j * size + i] * scratch.pw[i] : 0;
     c.kernel->cell_sums(scratch.cx.data(), scratch.masked.data(), stride, int(size), c.axis.count,
                         wanted == 1 ? scratch.hits.data() : scratch.misses.data());
   }
+}
+
+}  // namespace
+
+void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arrivals, int x, int y,
+                      PixelScratch& scratch) {
+  track_surface(c, arrivals, x, y, scratch.tracks);
+  scratch.px.clear(), scratch.py.clear(), scratch.pw.clear(), scratch.is_hit.clear();
+  for (std::size_t f = 0; f < c.sources.size(); ++f)
+    look_along(c, f, scratch.tracks[f], arrivals.front()->id, x, y, scratch);
+  const std::size_t area = std::size_t(c.axis.count) * std::size_t(c.axis.count);
+  scratch.hits.assign(area, 1);
+  scratch.misses.assign(area, 0);
+  if (!scratch.px.empty()) sum_coverage(c, scratch);
 }
 
 }  // namespace varve

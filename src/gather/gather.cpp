@@ -114,11 +114,11 @@ void write_diagnostics(AccumulateDiagnostics& d, const PixelSums& r, const Pixel
   d.surfaces.at(x, y) = float(pixel.surfaces);
   d.removed.at(x, y) = float(r.removed / r.all.sum);
   d.gain.at(x, y) = float(r.trust / r.arrivals);
-  std::uint64_t seen[8] = {};  // a bit for each frame of the widest window
+  std::uint64_t seen[kMostGathered / 64 + 1] = {};  // a bit for each frame of the widest window
   int frames = 0;
   for (const Arrival* a : pixel.arrivals)
     if (a) {
-      std::uint64_t& word = seen[a->frame / 64 % 8];
+      std::uint64_t& word = seen[a->frame / 64];
       const std::uint64_t bit = std::uint64_t(1) << (a->frame % 64);
       frames += (word & bit) == 0;
       word |= bit;
@@ -126,7 +126,12 @@ void write_diagnostics(AccumulateDiagnostics& d, const PixelSums& r, const Pixel
   d.frames.at(x, y) = float(frames);
 }
 
-/// Everything of one pixel. Companions share the color's weights, so that what added up to it still does.
+bool is_color(const Present& present, std::size_t companion) {
+  return companion >= present.companion_is_color.size() || present.companion_is_color[companion] != 0;
+}
+
+/// Everything of one pixel. Companions share the color's weights, and its gain where they are light, so that what added
+/// up to it still does.
 void write_pixel(Accumulated& out, const PixelContext& c, const PixelWeights& pixel, int x, int y) {
   const PixelSums r = sum_pixel(c, pixel);
   out.history.color.at(x, y) = finite_color(r.color / r.all.sum);
@@ -134,12 +139,15 @@ void write_pixel(Accumulated& out, const PixelContext& c, const PixelWeights& pi
   out.history.total.at(x, y) = float(std::min(1 / spread, 1e6));
   out.history.spread.at(x, y) = float(spread);
   write_diagnostics(out.diagnostics, r, pixel, x, y);
+  const Present& present = *c.sources[c.present].present;
   for (std::size_t k = 0; k < out.history.companions.size(); ++k) {
     glm::dvec4 sum(0);
     for (std::size_t i = 0; i < pixel.weights.size(); ++i)
-      if (const Arrival* a = pixel.arrivals[i])
-        sum += glm::dvec4(c.sources[a->frame].companion(k, a->pixel)) *
-               (double(a->gain * pixel.scale[i]) * double(pixel.weights[i]));
+      if (const Arrival* a = pixel.arrivals[i]) {
+        const glm::vec4& sample = c.sources[a->frame].companion(k, a->pixel);
+        const float gain = a->gain * pixel.scale[i];
+        sum += (is_color(present, k) ? lit(sample, gain) : glm::dvec4(sample)) * double(pixel.weights[i]);
+      }
     out.history.companions[k].at(x, y) = finite_color(sum / r.all.sum);
   }
 }

@@ -10,8 +10,12 @@
 
 namespace varve {
 
+/// Most frames in one window of frames: the one that is resolved and kMostReach on each side.
+inline constexpr int kMostReach = 256;
+inline constexpr int kMostGathered = 2 * kMostReach + 1;
+
 struct GatherParameters {
-  int reach = 16;       ///< frames on each side
+  int reach = 16;       ///< frames on each side, up to kMostReach
   int cells = 4;        ///< on a pixel's edge, 1 to 8
   double sigma = 0.09;  ///< of the Gaussian around a cell's middle, pixels; widened where samples are few
   SampleFilter filter = SampleFilter::none;  ///< the filter of the output; none: a box of one pixel
@@ -31,7 +35,7 @@ inline int gather_reach(const GatherParameters& parameters) { return parameters.
 /// Surfaces can be told apart by what the files have.
 SurfaceTest surface_test(const Present& present);
 
-/// Resolves sources[present]; `sources` are consecutive frames of one shot.
+/// Resolves sources[present]; `sources` are consecutive frames of one shot, at most kMostGathered.
 Accumulated gather(std::span<const GatherSource> sources, std::size_t present, const GatherParameters& parameters,
                    const SurfaceTest& test, const DiagnosticsWanted& wanted, Workers& workers,
                    Isa isa = Isa::automatic);

@@ -1,10 +1,12 @@
 #include "gather/gather_pixel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "gather/coverage.h"
 #include "gather/fireflies.h"
+#include "gather/noise_share.h"
 #include "gather/temporal_change.h"
 
 namespace varve {
@@ -73,9 +75,14 @@ Surfaces find_surfaces(const PixelContext& c, const std::vector<const Arrival*>&
     surface[i] = std::uint8_t(k);
     last = k;
   }
-  for (int k = 0; k < s.count; ++k) s.front_to_back[std::size_t(k)] = k;
-  std::stable_sort(s.front_to_back.begin(), s.front_to_back.begin() + s.count,
-                   [&](int a, int b) { return s.list[std::size_t(a)].depth() < s.list[std::size_t(b)].depth(); });
+  // Sorted by insertion: there are few.
+  for (int k = 0; k < s.count; ++k) {
+    int to = k;
+    for (; to > 0 && s.list[std::size_t(k)].depth() < s.list[std::size_t(s.front_to_back[std::size_t(to - 1)])].depth();
+         --to)
+      s.front_to_back[std::size_t(to)] = s.front_to_back[std::size_t(to - 1)];
+    s.front_to_back[std::size_t(to)] = k;
+  }
   return s;
 }
 
@@ -123,7 +130,9 @@ void axis_weights(const Surface& surface, const PixelContext& c, PixelScratch& s
   const auto begin = std::size_t(surface.begin), count = std::size_t(surface.padded);
   const auto stride = std::ptrdiff_t(size);
   float* weight = scratch.weight.data() + begin;
-  const float scale = gaussian_scale(c, {weight, count}, kColorSpacing);
+  lift_weights({weight, std::size_t(surface.count)});
+  const float scale = gaussian_scale(c, {weight, count}, kColorSpacing,
+                                     noise_share({scratch.ordered.data() + begin, std::size_t(surface.count)}));
   float *wx = scratch.wx.data() + begin, *wy = scratch.wy.data() + begin;
   c.kernel->axis_weights(scratch.x.data() + begin, surface.padded, c.axis.centers, c.axis.count, scale, wx, stride);
   c.kernel->axis_weights(scratch.y.data() + begin, surface.padded, c.axis.centers, c.axis.count, scale, wy, stride);
@@ -131,27 +140,8 @@ void axis_weights(const Surface& surface, const PixelContext& c, PixelScratch& s
     for (std::size_t i = 0; i < count; ++i) wy[j * size + i] *= weight[i];
 }
 
-}  // namespace
-
-float gaussian_scale(const PixelContext& c, std::span<const float> weights, double spacing) {
-  double sum = 0, squares = 0;
-  for (const float w : weights) sum += double(w), squares += double(w) * double(w);
-  const double edge = 2 * c.axis.radius + 2.0 / kBinsPerPixel;  // of the area that samples are taken from
-  const double per_pixel = squares > 0 ? sum * sum / squares / (edge * edge) : 0;
-  const double sigma = std::max(c.sigma, spacing / std::sqrt(std::max(per_pixel, 0.25)));
-  return float(0.5 / (sigma * sigma));
-}
-
-PixelWeights weigh_pixel(const PixelContext& c, int x, int y, PixelScratch& scratch) {
-  find_arrivals(c, x, y, scratch.found);
-  if (scratch.found.empty()) return {};
-  Surfaces s = find_surfaces(c, scratch.found, scratch.surface);
-  order_by_surface(s, c, x, y, scratch);
-  weigh_light(s, c, scratch);
-  scratch.wx.resize(scratch.ordered.size() * std::size_t(c.axis.count));
-  scratch.wy.resize(scratch.wx.size());
-  for (int k = 0; k < s.count; ++k) axis_weights(s.list[std::size_t(k)], c, scratch);
-
+/// Shares the area of the pixel among the surfaces, front to back, and that of each cell among the samples near it.
+void share_cells(const Surfaces& s, const PixelContext& c, int x, int y, PixelScratch& scratch) {
   const int cells = c.axis.count;
   const std::size_t area = std::size_t(cells) * std::size_t(cells), size = scratch.ordered.size();
   scratch.sums.resize(area);
@@ -178,6 +168,42 @@ PixelWeights weigh_pixel(const PixelContext& c, int x, int y, PixelScratch& scra
     c.kernel->sample_weights(scratch.wx.data() + begin, scratch.wy.data() + begin, std::ptrdiff_t(size), surface.padded,
                              cells, scratch.share.data(), scratch.result.data() + begin);
   }
+}
+
+}  // namespace
+
+void lift_weights(std::span<float> weights) {
+  const float most = weights.empty() ? 1 : *std::max_element(weights.begin(), weights.end());
+  if (most > 0.5f) return;
+  if (!(most > 0)) {
+    std::fill(weights.begin(), weights.end(), 1.0f);
+    return;
+  }
+  int exponent = 0;
+  std::frexp(most, &exponent);
+  for (float& weight : weights) weight = std::ldexp(weight, -exponent);
+}
+
+float gaussian_scale(const PixelContext& c, std::span<const float> weights, double spacing, double noise) {
+  double sum = 0, squares = 0;
+  for (const float w : weights) sum += double(w), squares += double(w) * double(w);
+  const double edge = 2 * c.axis.radius + 2.0 / kBinsPerPixel;  // of the area that samples are taken from
+  const double per_pixel = squares > 0 ? sum * sum / squares / (edge * edge) : 0;
+  const double widened = c.sigma + std::max(kNoiseSigma - c.sigma, 0.0) * std::clamp(2.5 * (noise - 0.5), 0.0, 1.0);
+  const double sigma = std::max(widened, spacing / std::sqrt(std::max(per_pixel, 0.25)));
+  return float(0.5 / (sigma * sigma));
+}
+
+PixelWeights weigh_pixel(const PixelContext& c, int x, int y, PixelScratch& scratch) {
+  find_arrivals(c, x, y, scratch.found);
+  if (scratch.found.empty()) return {};
+  Surfaces s = find_surfaces(c, scratch.found, scratch.surface);
+  order_by_surface(s, c, x, y, scratch);
+  weigh_light(s, c, scratch);
+  scratch.wx.resize(scratch.ordered.size() * std::size_t(c.axis.count));
+  scratch.wy.resize(scratch.wx.size());
+  for (int k = 0; k < s.count; ++k) axis_weights(s.list[std::size_t(k)], c, scratch);
+  share_cells(s, c, x, y, scratch);
   return {scratch.ordered, scratch.result, scratch.scale, s.count};
 }
 

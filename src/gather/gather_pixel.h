@@ -1,7 +1,6 @@
 // One pixel of the gather: surfaces sorted by depth, their coverage from all frames, cells of equal area.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,10 +33,26 @@ struct PixelContext {
   const CellKernel* kernel = nullptr;
 };
 
+/// Brings the largest weight into [1/2, 1) by a power of two, or all to 1 where all are 0: what counts little but has
+/// nothing beside it makes the pixel, and sums of products never underflow to 0.
+void lift_weights(std::span<float> weights);
+
+inline constexpr double kNoiseSigma = 0.2;  // px
+
 /// 1 / (2 sigma^2) of the cells' Gaussian. With few samples that count, cells must look further for one: n samples a
 /// pixel lie n^-1/2 pixels apart. Else the nearest would win, however little it counts.
 /// `spacing` is sigma for one sample in a pixel.
-float gaussian_scale(const PixelContext& context, std::span<const float> weights, double spacing);
+/// Where only noise would tell samples apart, near ones know no more than far ones, and cells widen up to kNoiseSigma.
+float gaussian_scale(const PixelContext& context, std::span<const float> weights, double spacing, double noise);
+
+/// Where a surface is in one frame, seen from a pixel.
+struct Track {
+  glm::dvec2 displacement{0};  ///< from that frame to the resolved one, pixels
+  float depth = 0;             ///< there
+  double distance = 1e300;     ///< of the arrival it was taken from, squared; 1e300: not seen
+  double weight = 1;           ///< how much its samples say
+  bool known() const { return distance < 1e299; }
+};
 
 /// Working space of one worker; grows to what the fullest pixel needs.
 struct PixelScratch {
@@ -48,6 +63,7 @@ struct PixelScratch {
   std::vector<float> px, py, pw, cx, cy, masked, hits, misses;  // of the coverage
   std::vector<std::uint8_t> is_hit;
   std::vector<double> through;
+  std::vector<Track> tracks;  ///< by frame
 };
 
 /// What becomes of a pixel. Weights are those of each arrival; they sum to 1.

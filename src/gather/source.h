@@ -71,4 +71,17 @@ inline SurfaceKey surface_at(const Present& p, int x, int y) {
   return {p.id.empty() ? 0u : p.id.at(x, y), p.depth.empty() ? 0.0f : p.depth.at(x, y)};
 }
 
+/// The same along a row.
+class SurfaceRow {
+ public:
+  SurfaceRow(const Present& p, int y)
+      : id_(p.id.empty() ? nullptr : p.id.row(y) - p.id.window().x0),
+        depth_(p.depth.empty() ? nullptr : p.depth.row(y) - p.depth.window().x0) {}
+  SurfaceKey operator[](int x) const { return {id_ ? id_[x] : 0u, depth_ ? depth_[x] : 0.0f}; }
+
+ private:
+  const std::uint32_t* id_;
+  const float* depth_;
+};
+
 }  // namespace varve

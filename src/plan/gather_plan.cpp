@@ -72,8 +72,8 @@ std::vector<PlannedPass> gather_passes(const SequenceInfo& info, const Parameter
 
 std::size_t gather_bytes_per_pixel(const Parameters& parameters) {
   const std::size_t frames = 2 * std::size_t(gather_reach(parameters.gather)) + 1;
-  // color and border, valid, vectors both ways, depth, id, light; where each sample goes
-  return frames * (16 + 4 + 8 + 8 + 4 + 4 + 4) + (2 * std::size_t(parameters.gather.reach) + 1) * 12;
+  // color and border, valid, vectors both ways, depth, id, light and its range; where each sample goes
+  return frames * (16 + 4 + 8 + 8 + 4 + 4 + 4 + 12) + (2 * std::size_t(parameters.gather.reach) + 1) * 12;
 }
 
 double gather_nanoseconds(const Parameters& parameters) {

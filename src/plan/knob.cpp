@@ -118,7 +118,7 @@ std::vector<Knob> knobs() {
       {"reach", "FRAMES", around, basic,
        "Frames on each side of the resolved one that take part. More frames, less noise and aliasing; cost grows with "
        "them.",
-       number([](auto& p) -> auto& { return p.gather.reach; }, {0, 256})},
+       number([](auto& p) -> auto& { return p.gather.reach; }, {0, kMostReach})},
       {"cells", "COUNT", around, advanced,
        "Cells on a pixel's edge. Each cell has the same say in the pixel, however many samples fall into it.",
        number([](auto& p) -> auto& { return p.gather.cells; }, {1, 8})},

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "base/error.h"
 #include "gather/opposite_vectors.h"
 #include "gather/round_trip.h"
 #include "gather/shading_gain.h"
@@ -101,11 +103,23 @@ void make_light(const SubjectFrames& frames, std::size_t i, const GatherParamete
   frames.memory[i].range = local_range(picture.history.color, frames.present(i), frames.test, frames.workers);
 }
 
+/// Samples are named by 16 bits on each axis.
+void check_size(const SourceFrame& frame, const Window& window) {
+  constexpr int most = 65536;
+  if (window.width() > most || window.height() > most)
+    throw Failure(ExitCode::inconsistent, "frame " + std::to_string(frame.headers.frame) + ": its data window is " +
+                                              std::to_string(window.width()) + "x" + std::to_string(window.height()) +
+                                              " pixels, and --accumulator gather takes at most " +
+                                              std::to_string(most) +
+                                              " on an edge; crop it, or give --accumulator recursive");
+}
+
 }  // namespace
 
 Accumulated gather_frame(const FrameWindow& window, std::size_t subject, std::size_t index, std::size_t first,
                          std::size_t last, const GatherParameters& parameters, GatherMemory& memory,
                          const DiagnosticsWanted& wanted, Workers& workers) {
+  for (std::size_t i = first; i <= last; ++i) check_size(window[i], window[i].presents[subject].color.window());
   std::erase_if(memory, [&](const auto& entry) { return entry.first < first || entry.first > last; });
   const SubjectFrames frames{
       window, subject, first, last, parameters, memory, surface_test(window[index].presents[subject]), workers};

@@ -1,9 +1,8 @@
 // What the gather keeps between frames: vectors in both directions and the light of each frame, made once each.
 #pragma once
 
+#include <cstddef>
 #include <map>
-#include <span>
-#include <vector>
 
 #include "gather/gather.h"
 #include "stages/frame_window.h"
