@@ -127,7 +127,8 @@ std::vector<Knob> knobs() {
        "blur. It is widened where there are few frames.",
        number([](auto& p) -> auto& { return p.gather.sigma; }, {0.01, 2})},
       {"change-limit", "SIGMAS", around, expert,
-       "Standard errors by which the light of frames further off may differ in a pixel before they count less, as under "
+       "Standard errors by which the light of frames further off may differ in a pixel before they count less, as "
+       "under "
        "a highlight that slides by. 0: no test. Small values shrink the window everywhere.",
        number([](auto& p) -> auto& { return p.gather.change_limit; }, {0, 1000})},
       {"firefly-limit", "SIGMAS", around, advanced,
