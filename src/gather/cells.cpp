@@ -14,8 +14,8 @@ typedef int Int8 __attribute__((vector_size(32)));
 }
 [[gnu::always_inline]] inline void store8(float* p, Float8 v) { __builtin_memcpy(p, &v, sizeof v); }
 
-/// e^x for -40 <= x <= 0, relative difference below 3e-7: 2^n by the exponent bits, the rest by a polynomial (Taylor of
-/// 2^f around the middle of [-1/2, 1/2], six terms).
+/// e^x for -40 <= x <= 0, relative difference below 4e-7 - 6e-8 x, for x / ln 2 is rounded: 2^n by the exponent bits,
+/// the rest by a polynomial (Taylor of 2^f around the middle of [-1/2, 1/2], six terms).
 [[gnu::always_inline]] inline Float8 exponential(Float8 x) {
   const Float8 t = x * 1.44269504f;
   // Rounds to nearest: t is negative, so truncating t - 1/2 does it.

@@ -205,7 +205,7 @@ Accumulated gather(std::span<const GatherSource> sources, std::size_t present, c
   context.firefly_limit = parameters.firefly_limit;
   context.test = test;
   context.kernel = cell_kernel_for(isa);
-  // One bin beyond the filter, in whole bins: what a pixel meets must not hang on the tile it lies in.
+  // Whole bins, as find_arrivals() reads them: else pixels at a tile's edge would miss samples that others see.
   const TileGrid grid{w, (std::ceil((context.axis.radius - 0.5) * kBinsPerPixel) + 1) / kBinsPerPixel};
   std::vector<BlockLists> lists(sources.size());
   workers.for_each(sources.size(), [&](std::size_t i, int) { lists[i] = list_blocks(sources[i], fields[i], grid); });

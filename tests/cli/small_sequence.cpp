@@ -71,7 +71,7 @@ void write_small_frame(const std::filesystem::path& path, int frame, const Small
     add("ViewLayer.Vector.Z", Imf::FLOAT, vz);
     add("ViewLayer.Vector.W", Imf::FLOAT, vw);
   }
-  add("ViewLayer.IndexOB.X", Imf::UINT, id);
+  if (sequence.with_ids) add("ViewLayer.IndexOB.X", Imf::UINT, id);
   Imf::OutputFile file(path.c_str(), header, 0);
   file.setFrameBuffer(pixels);
   file.writePixels(h);

@@ -8,7 +8,7 @@ namespace varve::test {
 
 struct SmallSequence {
   int frames = 8, width = 64, height = 48;  ///< frames 1..n
-  bool with_vectors = true, with_depth = true;
+  bool with_vectors = true, with_depth = true, with_ids = true;
 };
 
 /// Writes `folder`/in.0001.exr and so on: ViewLayer.Combined RGBA (half), ViewLayer.Depth.Z and ViewLayer.Vector.XYZW
