@@ -136,7 +136,7 @@ void sum_coverage(const PixelContext& c, PixelScratch& scratch) {
   scratch.is_hit.resize(size, 2);
   scratch.px.resize(size, 0), scratch.py.resize(size, 0), scratch.pw.resize(size, 0);
   scratch.cx.resize(size * cells), scratch.cy.resize(size * cells), scratch.masked.resize(size * cells);
-  const float scale = gaussian_scale(c, scratch.pw, kOutlineSpacing);
+  const float scale = gaussian_scale(c, scratch.pw, kOutlineSpacing, 0);
   const auto stride = std::ptrdiff_t(size);
   c.kernel->axis_weights(scratch.px.data(), int(size), c.axis.centers, c.axis.count, scale, scratch.cx.data(), stride);
   c.kernel->axis_weights(scratch.py.data(), int(size), c.axis.centers, c.axis.count, scale, scratch.cy.data(), stride);

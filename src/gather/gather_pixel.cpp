@@ -6,6 +6,7 @@
 
 #include "gather/coverage.h"
 #include "gather/fireflies.h"
+#include "gather/noise_share.h"
 #include "gather/temporal_change.h"
 
 namespace varve {
@@ -130,7 +131,8 @@ void axis_weights(const Surface& surface, const PixelContext& c, PixelScratch& s
   const auto stride = std::ptrdiff_t(size);
   float* weight = scratch.weight.data() + begin;
   lift_weights({weight, std::size_t(surface.count)});
-  const float scale = gaussian_scale(c, {weight, count}, kColorSpacing);
+  const float scale = gaussian_scale(c, {weight, count}, kColorSpacing,
+                                     noise_share({scratch.ordered.data() + begin, std::size_t(surface.count)}));
   float *wx = scratch.wx.data() + begin, *wy = scratch.wy.data() + begin;
   c.kernel->axis_weights(scratch.x.data() + begin, surface.padded, c.axis.centers, c.axis.count, scale, wx, stride);
   c.kernel->axis_weights(scratch.y.data() + begin, surface.padded, c.axis.centers, c.axis.count, scale, wy, stride);
@@ -182,12 +184,13 @@ void lift_weights(std::span<float> weights) {
   for (float& weight : weights) weight = std::ldexp(weight, -exponent);
 }
 
-float gaussian_scale(const PixelContext& c, std::span<const float> weights, double spacing) {
+float gaussian_scale(const PixelContext& c, std::span<const float> weights, double spacing, double noise) {
   double sum = 0, squares = 0;
   for (const float w : weights) sum += double(w), squares += double(w) * double(w);
   const double edge = 2 * c.axis.radius + 2.0 / kBinsPerPixel;  // of the area that samples are taken from
   const double per_pixel = squares > 0 ? sum * sum / squares / (edge * edge) : 0;
-  const double sigma = std::max(c.sigma, spacing / std::sqrt(std::max(per_pixel, 0.25)));
+  const double widened = c.sigma + std::max(kNoiseSigma - c.sigma, 0.0) * std::clamp(2.5 * (noise - 0.5), 0.0, 1.0);
+  const double sigma = std::max(widened, spacing / std::sqrt(std::max(per_pixel, 0.25)));
   return float(0.5 / (sigma * sigma));
 }
 

@@ -37,10 +37,13 @@ struct PixelContext {
 /// nothing beside it makes the pixel, and sums of products never underflow to 0.
 void lift_weights(std::span<float> weights);
 
+inline constexpr double kNoiseSigma = 0.2;  // px
+
 /// 1 / (2 sigma^2) of the cells' Gaussian. With few samples that count, cells must look further for one: n samples a
 /// pixel lie n^-1/2 pixels apart. Else the nearest would win, however little it counts.
 /// `spacing` is sigma for one sample in a pixel.
-float gaussian_scale(const PixelContext& context, std::span<const float> weights, double spacing);
+/// Where only noise would tell samples apart, near ones know no more than far ones, and cells widen up to kNoiseSigma.
+float gaussian_scale(const PixelContext& context, std::span<const float> weights, double spacing, double noise);
 
 /// Where a surface is in one frame, seen from a pixel.
 struct Track {

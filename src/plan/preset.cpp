@@ -16,10 +16,10 @@ constexpr Preset kPresets[] = {
      "accumulator=gather reach=8 cells=4 sigma=0.12 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
      "sample-filter=none return-tolerance=0"},
     {"high", "Varve", "Sixteen frames on each side: for final frames.",
-     "accumulator=gather reach=16 cells=4 sigma=0.12 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
+     "accumulator=gather reach=16 cells=4 sigma=0.1 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
      "sample-filter=none return-tolerance=0.5"},
     {"reference", "Varve", "Twenty-four frames on each side, thirty-six cells: as good as it gets.",
-     "accumulator=gather reach=24 cells=6 sigma=0.1 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
+     "accumulator=gather reach=24 cells=6 sigma=0.07 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
      "sample-filter=none return-tolerance=0.5"},
     {"two-sided", "Fraser and Potter 1969; Rauch, Tung and Striebel 1965",
      "Past and future histories merged: for frames without ids, depth or jitter that the gather could use.",

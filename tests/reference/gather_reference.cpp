@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
+#include "gather/shading_gain.h"
 #include "resolve/sample_weights.h"
 
 namespace varve::reference {
@@ -148,11 +150,36 @@ Cells cells_of(const GatherParameters& p) {
   return c;
 }
 
-double sigma_of(const Cells& c, const GatherParameters& p, const std::vector<double>& weights, double spacing) {
+/// Sum of squared distances from the mean.
+double spread(const std::vector<double>& values) {
+  double mean = 0, sum = 0;
+  for (const double v : values) mean += v / double(values.size());
+  for (const double v : values) sum += (v - mean) * (v - mean);
+  return sum;
+}
+
+/// Variance within quarter pixels over the variance of all; quarters are told apart in float, as the program does.
+double noise_of(const std::vector<Sample>& layer, glm::dvec2 tile) {
+  std::map<std::pair<float, float>, std::vector<double>> quarters;
+  std::vector<double> all;
+  for (const Sample& s : layer) {
+    const double light = double(float(luminance(glm::vec4(s.color))));
+    all.push_back(light);
+    quarters[{std::floor(float(s.at.x - tile.x) * 4), std::floor(float(s.at.y - tile.y) * 4)}].push_back(light);
+  }
+  double within = 0, freedom = 0;
+  for (const auto& [place, values] : quarters) within += spread(values), freedom += double(values.size()) - 1;
+  const double total = spread(all) / (double(all.size()) - 1);
+  return freedom >= 8 && total > 0 ? within / freedom / total : 0;
+}
+
+double sigma_of(const Cells& c, const GatherParameters& p, const std::vector<double>& weights, double spacing,
+                double noise) {
   double sum = 0, squares = 0;
   for (const double w : weights) sum += w, squares += w * w;
   const double edge = 2 * c.radius + 0.5, per_pixel = squares > 0 ? sum * sum / squares / (edge * edge) : 0;
-  return std::max(p.sigma, spacing / std::sqrt(std::max(per_pixel, 0.25)));
+  const double widened = p.sigma + std::max(0.2 - p.sigma, 0.0) * std::clamp(2.5 * (noise - 0.5), 0.0, 1.0);
+  return std::max(widened, spacing / std::sqrt(std::max(per_pixel, 0.25)));
 }
 
 double bell(glm::dvec2 d, double sigma) {
@@ -301,8 +328,9 @@ glm::dvec4 gathered_pixel(std::span<const GatherSource> sources, std::size_t pre
                   list[k].front().key.id, corner, cells.reach, test);
     std::vector<double> weights;
     for (const Look& l : seen) weights.push_back(l.weight);
-    const double outline = sigma_of(cells, parameters, weights, 0.43),
-                 blur = sigma_of(cells, parameters, std::vector<double>(list[k].size(), 1), 0.3);
+    const double outline = sigma_of(cells, parameters, weights, 0.43, 0),
+                 blur =
+                     sigma_of(cells, parameters, std::vector<double>(list[k].size(), 1), 0.3, noise_of(list[k], tile));
     for (std::size_t cell = 0; cell < n * n; ++cell) {
       const glm::dvec2 at(cells.center[cell % n], cells.center[cell / n]);
       double hits = seen.empty() ? 1 : 0, all = hits;

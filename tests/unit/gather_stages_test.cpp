@@ -4,6 +4,7 @@
 #include <random>
 
 #include "gather/carry.h"
+#include "gather/noise_share.h"
 #include "gather/opposite_vectors.h"
 #include "gather/round_trip.h"
 #include "gather/temporal_change.h"
@@ -280,4 +281,29 @@ TEST_F(Change, TextureIsLeftAlone) {
 }
 
 }  // namespace
+TEST(GatherStages, NoiseIsToldFromDetail) {
+  // A pixel crossed by an edge: samples in the same quarter agree. And the same places with values at random.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(0, 1);
+  std::vector<Arrival> edge, noise;
+  for (int bin = 0; bin < 16; ++bin)
+    for (int k = 0; k < 3; ++k) {
+      Arrival a{};
+      a.x = (float(bin % 4) + unit(random)) / 4, a.y = (float(bin / 4) + unit(random)) / 4;
+      a.light = bin % 4 < 2 ? 0.1f : 0.9f;
+      edge.push_back(a);
+      a.light = unit(random);
+      noise.push_back(a);
+    }
+  const auto share = [](const std::vector<Arrival>& list) {
+    std::vector<const Arrival*> pointers;
+    for (const Arrival& a : list) pointers.push_back(&a);
+    return noise_share(pointers);
+  };
+  EXPECT_LT(share(edge), 1e-6);
+  EXPECT_GT(share(noise), 0.7);
+  EXPECT_LT(share(noise), 1.3);
+  EXPECT_EQ(share({edge.begin(), edge.begin() + 4}), 0);  // too few to tell
+}
+
 }  // namespace varve
