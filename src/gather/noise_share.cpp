@@ -1,7 +1,5 @@
 #include "gather/noise_share.h"
 
-#include <cmath>
-
 namespace varve {
 namespace {
 
@@ -12,10 +10,10 @@ struct Sums {
   double spread() const { return count > 0 ? squares - sum * sum / count : 0; }
 };
 
-bool same_bin(const Arrival& a, const Arrival& b) {
-  return std::floor(a.x * kBinsPerPixel) == std::floor(b.x * kBinsPerPixel) &&
-         std::floor(a.y * kBinsPerPixel) == std::floor(b.y * kBinsPerPixel);
-}
+/// Bins from well before the tile's edge; casts, since floor() is a call on plain x86-64.
+int bin_of(float at) { return int((at + float(kTile)) * kBinsPerPixel); }
+
+bool same_bin(const Arrival& a, const Arrival& b) { return bin_of(a.x) == bin_of(b.x) && bin_of(a.y) == bin_of(b.y); }
 
 }  // namespace
 
