@@ -19,6 +19,11 @@ inline double luminance(const glm::vec4& c) {
 Plane<float> local_light(const Plane<glm::vec4>& color, const Present& present, const SurfaceTest& test, int edge,
                          Workers& workers);
 
+/// `light` is that of a pilot, whose neighboring frames blur light that changes at once. Where the frame's own samples
+/// differ from the pilot over the window by more than 6 standard errors and a twentieth, they are right.
+void follow_sudden_light(Plane<float>& light, const Plane<glm::vec4>& pilot, const Present& present,
+                         const SurfaceTest& test, int edge, Workers& workers);
+
 /// Luminance of `color` and its range over 3x3 pixels.
 Plane<LightRange> local_range(const Plane<glm::vec4>& color, const Present& present, const SurfaceTest& test,
                               Workers& workers);

@@ -1,7 +1,6 @@
 #include "stages/gather_frame.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "base/error.h"
@@ -75,17 +74,6 @@ std::size_t ahead(std::size_t index, int frames, std::size_t last) {
   return index + std::min(last - index, std::size_t(frames));
 }
 
-/// The pilot's neighbors blur light that changes at once. Where the frame's own samples, noisier, say something else by
-/// more than noise, they are right.
-void prefer_sudden(Plane<float>& light, const Plane<float>& own, Workers& workers) {
-  constexpr float kNoise = 0.06f;
-  const Window& w = light.window();
-  workers.for_rows(w.y0, w.y1, [&](int y) {
-    for (int x = w.x0; x < w.x1; ++x)
-      if (std::fabs(own.at(x, y) - light.at(x, y)) > kNoise * light.at(x, y)) light.at(x, y) = own.at(x, y);
-  });
-}
-
 /// A first, cheap picture of a frame, good enough to measure light in: its direct neighbors only, few cells.
 void make_light(const SubjectFrames& frames, std::size_t i, const GatherParameters& parameters) {
   if (!frames.memory[i].light.empty()) return;
@@ -95,11 +83,10 @@ void make_light(const SubjectFrames& frames, std::size_t i, const GatherParamete
   pilot.cells = std::min(parameters.cells, 2);
   const std::size_t begin = back(i, 1, frames.first), end = ahead(i, 1, frames.last);
   const Accumulated picture = gather(frames.sources(begin, end), i - begin, pilot, frames.test, {}, frames.workers);
-  const auto light = [&](const Plane<glm::vec4>& color) {
-    return local_light(color, frames.present(i), frames.test, parameters.gain_window, frames.workers);
-  };
-  frames.memory[i].light = light(picture.history.color);
-  prefer_sudden(frames.memory[i].light, light(frames.present(i).color), frames.workers);
+  Plane<float>& light = frames.memory[i].light;
+  light = local_light(picture.history.color, frames.present(i), frames.test, parameters.gain_window, frames.workers);
+  follow_sudden_light(light, picture.history.color, frames.present(i), frames.test, parameters.gain_window,
+                      frames.workers);
   frames.memory[i].range = local_range(picture.history.color, frames.present(i), frames.test, frames.workers);
 }
 
