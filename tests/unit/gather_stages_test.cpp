@@ -306,4 +306,24 @@ TEST(GatherStages, NoiseIsToldFromDetail) {
   EXPECT_EQ(share({edge.begin(), edge.begin() + 4}), 0);  // too few to tell
 }
 
+TEST(GatherStages, SuddenLightIsFollowedAndNoiseIsNot) {
+  // The pilot is the mean of three frames; the own samples are noisy, and on the right twice as bright as it knows.
+  Workers workers(2);
+  const Window w{0, 0, 61, 33};
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> unit(0.5f, 1.5f);
+  Present present;
+  present.color = Plane<glm::vec4>(w, kPresentBorder, glm::vec4(0));
+  Plane<glm::vec4> pilot(w, 0, glm::vec4(1));
+  for (int y = w.y0; y < w.y1; ++y)
+    for (int x = w.x0; x < w.x1; ++x)
+      present.color.at(x, y) = glm::vec4(glm::vec3(unit(random) * (x < 30 ? 1.0f : 2.0f)), 1);
+  sanitize(present, workers);
+  const SurfaceTest test = surface_test(present);
+  Plane<float> light = local_light(pilot, present, test, 15, workers);
+  follow_sudden_light(light, pilot, present, test, 15, workers);
+  EXPECT_EQ(light.at(8, 16), 1.0f);  // noise alone changes nothing
+  EXPECT_NEAR(light.at(50, 16), 2.0, 0.1);
+}
+
 }  // namespace varve
