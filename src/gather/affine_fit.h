@@ -25,16 +25,14 @@ class AffineFit {
   double weight() const { return w_; }
   /// True where the slope is known in every direction: the samples do not lie on a line.
   bool spans_plane() const {
-    const double mx = x_ / w_, my = y_ / w_;
-    const double sxx = xx_ / w_ - mx * mx, sxy = xy_ / w_ - mx * my, syy = yy_ / w_ - my * my;
+    const Spread s = spread();
     // The smaller spread is about the determinant over the sum.
-    return count_ >= 5 && sxx * syy - sxy * sxy > kFirmSpread * (sxx + syy);
+    return count_ >= 5 && s.xx * s.yy - s.xy * s.xy > kFirmSpread * (s.xx + s.yy);
   }
   /// True where the origin does not lie far off the samples, in units of their spread.
   bool is_around() const {
-    const double mx = x_ / w_, my = y_ / w_;
-    const double sxx = xx_ / w_ - mx * mx, sxy = xy_ / w_ - mx * my, syy = yy_ / w_ - my * my;
-    return mx * mx * syy - 2 * mx * my * sxy + my * my * sxx < kFirmReach * (sxx * syy - sxy * sxy);
+    const Spread s = spread();
+    return s.x * s.x * s.yy - 2 * s.x * s.y * s.xy + s.y * s.y * s.xx < kFirmReach * (s.xx * s.yy - s.xy * s.xy);
   }
   /// Weighted mean square of what the plane leaves over, x and y together.
   double misfit() const {
@@ -57,19 +55,27 @@ class AffineFit {
     Wide x, y;
   };
   Slope slope() const {
-    const double mx = x_ / w_, my = y_ / w_;
+    Spread s = spread();
     const Wide mean = v_ / w_;
-    double sxx = xx_ / w_ - mx * mx, sxy = xy_ / w_ - mx * my, syy = yy_ / w_ - my * my;
-    const double ridge = (spans_plane() ? 1e-9 : 1e-3) * (sxx + syy) + 1e-6;
-    sxx += ridge, syy += ridge;
-    const Wide cx = vx_ / w_ - mx * mean, cy = vy_ / w_ - my * mean;
-    const double det = sxx * syy - sxy * sxy;
-    return {(cx * syy - cy * sxy) / det, (cy * sxx - cx * sxy) / det};
+    const double ridge = (spans_plane() ? 1e-9 : 1e-3) * (s.xx + s.yy) + 1e-6;
+    s.xx += ridge, s.yy += ridge;
+    const Wide cx = vx_ / w_ - s.x * mean, cy = vy_ / w_ - s.y * mean;
+    const double det = s.xx * s.yy - s.xy * s.xy;
+    return {(cx * s.yy - cy * s.xy) / det, (cy * s.xx - cx * s.xy) / det};
   }
 
  private:
   static constexpr double kFirmSpread = 0.25;  // squared pixels
   static constexpr double kFirmReach = 4;
+
+  /// Mean of the offsets, and their second moments around it.
+  struct Spread {
+    double x, y, xx, xy, yy;
+  };
+  Spread spread() const {
+    const double x = x_ / w_, y = y_ / w_;
+    return {x, y, xx_ / w_ - x * x, xy_ / w_ - x * y, yy_ / w_ - y * y};
+  }
 
   double w_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0, yy_ = 0;
   Wide first_{0}, v_{0}, vv_{0}, vx_{0}, vy_{0};

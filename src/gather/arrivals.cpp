@@ -29,18 +29,24 @@ TileSpan tiles_around(const GatherSource& source, const TileGrid& grid, double l
   return s;
 }
 
-TileSpan tiles_of_block(const GatherSource& source, const Carried& field, const TileGrid& grid, int bx, int by) {
+/// Calls use(x, y) with the position, without the jitter, of each sample of a block that could be followed.
+template <class Use>
+void for_each_landing(const GatherSource& source, const Carried& field, int bx, int by, const Use& use) {
   const Window& w = source.window();
-  double low_x = 1e300, low_y = 1e300, high_x = -1e300, high_y = -1e300;
   const int x1 = std::min(w.x0 + (bx + 1) * kTile, w.x1), y1 = std::min(w.y0 + (by + 1) * kTile, w.y1);
   for (int y = w.y0 + by * kTile; y < y1; ++y)
     for (int x = w.x0 + bx * kTile; x < x1; ++x) {
       const glm::vec3& d = field.at(x, y);
-      if (!(d.x == d.x)) continue;
-      const double tx = x + double(d.x), ty = y + double(d.y);
-      low_x = std::min(low_x, tx), high_x = std::max(high_x, tx);
-      low_y = std::min(low_y, ty), high_y = std::max(high_y, ty);
+      if (d.x == d.x) use(x + double(d.x), y + double(d.y));
     }
+}
+
+TileSpan tiles_of_block(const GatherSource& source, const Carried& field, const TileGrid& grid, int bx, int by) {
+  double low_x = 1e300, low_y = 1e300, high_x = -1e300, high_y = -1e300;
+  for_each_landing(source, field, bx, by, [&](double x, double y) {
+    low_x = std::min(low_x, x), high_x = std::max(high_x, x);
+    low_y = std::min(low_y, y), high_y = std::max(high_y, y);
+  });
   if (!(low_x <= high_x)) return {};
   return tiles_around(source, grid, low_x, low_y, high_x, high_y);
 }
@@ -50,17 +56,11 @@ TileSpan tiles_of_block(const GatherSource& source, const Carried& field, const 
 void scattered_tiles(const GatherSource& source, const Carried& field, const TileGrid& grid, int bx, int by,
                      std::vector<std::size_t>& tiles) {
   tiles.clear();
-  const Window& w = source.window();
-  const int x1 = std::min(w.x0 + (bx + 1) * kTile, w.x1), y1 = std::min(w.y0 + (by + 1) * kTile, w.y1);
-  for (int y = w.y0 + by * kTile; y < y1; ++y)
-    for (int x = w.x0 + bx * kTile; x < x1; ++x) {
-      const glm::vec3& d = field.at(x, y);
-      if (!(d.x == d.x)) continue;
-      const double tx = x + double(d.x), ty = y + double(d.y);
-      const TileSpan s = tiles_around(source, grid, tx, ty, tx, ty);
-      for (int row = s.y0; row < s.y1; ++row)
-        for (int column = s.x0; column < s.x1; ++column) tiles.push_back(std::size_t(row * grid.columns() + column));
-    }
+  for_each_landing(source, field, bx, by, [&](double x, double y) {
+    const TileSpan s = tiles_around(source, grid, x, y, x, y);
+    for (int row = s.y0; row < s.y1; ++row)
+      for (int column = s.x0; column < s.x1; ++column) tiles.push_back(std::size_t(row * grid.columns() + column));
+  });
   std::sort(tiles.begin(), tiles.end());
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
 }

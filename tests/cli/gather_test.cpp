@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "program.h"
+#include "scene_cli.h"
 #include "sentence.h"
 #include "small_sequence.h"
 
@@ -12,26 +12,13 @@ namespace varve::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
 
-class GatherCli : public testing::Test {
+class GatherCli : public SceneCli {
  protected:
-  void synth(const std::string& scene, const std::string& frames, const Arguments& more = {}) const {
-    Arguments line = {"synth", scene, "-o", "in", "--size", "64x36", "-f", frames, "-q"};
-    line.insert(line.end(), more.begin(), more.end());
-    ASSERT_EQ(run_varve(line, folder.path()).code, 0);
-  }
-
   /// Resolves INPUT into `to`.
   Outcome resolve(const std::string& input, const std::string& to, const Arguments& more = {}) const {
-    fs::create_directories(folder / to);
-    Arguments line = {"resolve", input, "-o", to + "/o.####.exr", "--accumulator", "gather"};
-    line.insert(line.end(), more.begin(), more.end());
-    return run_varve(line, folder.path());
+    return resolve_into(input, to, {"--accumulator", "gather"}, more);
   }
-
-  static std::string number(int frame) { return (frame < 10 ? "000" : "00") + std::to_string(frame); }
-  std::string path(const std::string& to, int frame) const { return folder / (to + "/o." + number(frame) + ".exr"); }
 
   void expect_same_files(const std::string& part, const std::string& whole) const {
     const std::vector<std::string> names = files_below(folder / part);
@@ -39,20 +26,6 @@ class GatherCli : public testing::Test {
     for (const std::string& name : names)
       EXPECT_TRUE(bytes_of(folder / (part + "/" + name)) == bytes_of(folder / (whole + "/" + name))) << part << name;
   }
-
-  /// PSNR against the box-filtered truth, over all frames given.
-  double psnr(const std::string& scene, const std::string& to, const std::string& frames) const {
-    const std::string out = run_varve({"compare", "in/truth/" + scene + ".####.exr", to + "/o.####.exr", "-f", frames,
-                                       "--metrics", "psnr", "--json", "-"},
-                                      folder.path())
-                                .out;
-    const std::size_t at = out.find("\"psnr\":");
-    return at == std::string::npos ? 0 : std::strtod(out.c_str() + at + 7, nullptr);
-  }
-
-  Folder folder;
-  const Arguments backward_only = {"--convention",        "varve", "--map",
-                                   "motion.x=velocity.x", "--map", "motion.y=velocity.y"};
 };
 
 TEST_F(GatherCli, IsFarBetterThanTheRecursiveOne) {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "program.h"
+#include "scene_cli.h"
 #include "sentence.h"
 #include "small_sequence.h"
 
@@ -14,47 +14,18 @@ namespace varve::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
 
-class TwoSidedCli : public testing::Test {
+class TwoSidedCli : public SceneCli {
  protected:
-  void synth(const std::string& scene, const std::string& frames, const Arguments& more = {}) const {
-    Arguments line = {"synth", scene, "-o", "in", "--size", "64x36", "-f", frames, "-q"};
-    line.insert(line.end(), more.begin(), more.end());
-    ASSERT_EQ(run_varve(line, folder.path()).code, 0);
-  }
-
   /// Resolves in/SCENE into `to`.
   Outcome resolve(const std::string& scene, const std::string& to, const Arguments& more = {}) const {
-    fs::create_directories(folder / to);
-    Arguments line = {"resolve",   "in/" + scene + ".####.exr", "-o", to + "/o.####.exr", "--accumulator",
-                      "two-sided", "--clip-discount",           "on"};
-    line.insert(line.end(), more.begin(), more.end());
-    return run_varve(line, folder.path());
+    return resolve_into("in/" + scene + ".####.exr", to, {"--accumulator", "two-sided", "--clip-discount", "on"}, more);
   }
-
-  static std::string number(int frame) { return (frame < 10 ? "000" : "00") + std::to_string(frame); }
-  std::string bytes(const std::string& to, int frame) const {
-    return bytes_of(folder / (to + "/o." + number(frame) + ".exr"));
-  }
-
-  /// PSNR against the box-filtered truth, over all frames given.
-  double psnr(const std::string& scene, const std::string& to, const std::string& frames) const {
-    const std::string out = run_varve({"compare", "in/truth/" + scene + ".####.exr", to + "/o.####.exr", "-f", frames,
-                                       "--metrics", "psnr", "--json", "-"},
-                                      folder.path())
-                                .out;
-    const std::size_t at = out.find("\"psnr\":");
-    return at == std::string::npos ? 0 : std::strtod(out.c_str() + at + 7, nullptr);
-  }
-
-  Folder folder;
+  std::string bytes(const std::string& to, int frame) const { return bytes_of(path(to, frame)); }
 };
 
 TEST_F(TwoSidedCli, AnyPartOfTheSequenceResolvesToTheSameBytes) {
   synth("crossing", "1-26");
-  const Arguments backward_only = {"--convention",        "varve", "--map",
-                                   "motion.x=velocity.x", "--map", "motion.y=velocity.y"};
   for (const Arguments& vectors : {Arguments{}, backward_only}) {
     Arguments line = {"--look-ahead", "4", "--aov", "all", "--disocclusion", "depth", "--cuts", "14"};
     line.insert(line.end(), vectors.begin(), vectors.end());
