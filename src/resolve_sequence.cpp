@@ -7,16 +7,15 @@
 
 #include "base/error.h"
 #include "base/reject.h"
-#include "exr/read_frame.h"
 #include "exr/write_frame.h"
 #include "plan/preset.h"
 #include "resolve/accumulate.h"
 #include "stages/find_cut.h"
+#include "stages/follow_motion.h"
 #include "stages/frame_window.h"
 #include "stages/gather_frame.h"
 #include "stages/preflight.h"
 #include "stages/previews.h"
-#include "stages/read_present.h"
 #include "stages/two_sided_pass.h"
 #include "stages/write_resolved.h"
 
@@ -96,108 +95,12 @@ Setup set_up(const ResolveJob& job) {
   return s;
 }
 
-/// Frames of a sequence must agree on what is resolved and on what that takes; windows may move.
-void check_same_subjects(const FrameHeaders& first, const FrameHeaders& now, const Plan& plan) {
-  const std::string where = "frame " + std::to_string(now.frame) + " ('" + now.files.front().path + "')";
-  if (now.subjects.size() != first.subjects.size())
-    throw Failure(ExitCode::inconsistent, where + " has " + std::to_string(now.subjects.size()) +
-                                              " color layers to resolve, frame " + std::to_string(first.frame) +
-                                              " has " + std::to_string(first.subjects.size()) +
-                                              "; render it again, or leave it out with --frames");
-  for (std::size_t i = 0; i < now.subjects.size(); ++i) {
-    const Subject &a = first.subjects[i], &b = now.subjects[i];
-    const std::string layer = b.layer.empty() ? "the main layer" : "layer '" + b.layer + "'";
-    if (a.layer != b.layer || a.view != b.view)
-      throw Failure(ExitCode::inconsistent, where + " has " + layer + " where frame " + std::to_string(first.frame) +
-                                                " has '" + a.layer +
-                                                "'; choose with --layer, or leave the frame out with --frames");
-    for (std::size_t k = 0; k < 4; ++k)
-      if (a.color[k].has_value() != b.color[k].has_value())
-        throw Failure(ExitCode::inconsistent, where + ", " + layer + ": channel " + "RGBA"[k] + " is " +
-                                                  (b.color[k] ? "there" : "missing") + " but not so in frame " +
-                                                  std::to_string(first.frame) +
-                                                  "; render it again, or leave it out with --frames");
-    const auto same_places = [](const Companion& c, const Companion& d) {
-      for (std::size_t k = 0; k < 4; ++k)
-        if (c.channels[k].has_value() != d.channels[k].has_value()) return false;
-      return c.layer == d.layer && c.color == d.color;
-    };
-    if (!std::equal(a.companions.begin(), a.companions.end(), b.companions.begin(), b.companions.end(), same_places))
-      throw Failure(ExitCode::inconsistent,
-                    where + ", " + layer + ": what --channels names is not what it is in frame " +
-                        std::to_string(first.frame) +
-                        "; render it again, name other channels, or leave it out with --frames");
-    const bool other_vectors =
-        a.backward.has_value() != b.backward.has_value() || a.forward.has_value() != b.forward.has_value();
-    const bool other_marks = (plan.use_id && a.id.has_value() != b.id.has_value()) ||
-                             (plan.use_normal && a.normal.has_value() != b.normal.has_value());
-    if ((plan.use_motion && other_vectors) || (plan.use_depth && a.depth.has_value() != b.depth.has_value()) ||
-        other_marks)
-      throw Failure(ExitCode::inconsistent,
-                    where + ", " + layer + ": its depth, motion, id or normal channels are not those of frame " +
-                        std::to_string(first.frame) + "; render it again, or leave it out with --frames");
-  }
-}
-
-/// Names the frame in what a stage has to say: file names alone need not tell it.
-template <typename Work>
-auto in_frame(int frame, Work work) {
-  try {
-    return work();
-  } catch (const Failure& failure) {
-    throw Failure(failure.code(), "frame " + std::to_string(frame) + ": " + failure.what());
-  }
-}
-
 /// A finished frame is worked on again only where a later one needs its history.
 bool is_needed(const std::vector<ScheduledFrame>& schedule, std::size_t index, const FrameReach& reach) {
   bool needed = schedule[index].write && !schedule[index].complete;
   for (std::size_t k = index + 1; reach.back_to_restart && !needed && k < schedule.size() && !schedule[k].restart; ++k)
     needed = schedule[k].write && !schedule[k].complete;
   return needed;
-}
-
-/// Reads one frame of the schedule: headers, the channels that the plan names, a present for each subject.
-SourceFrame read_frame(const Setup& s, const ScheduledFrame& scheduled, std::vector<SubjectState>& states,
-                       Workers& workers) {
-  SourceFrame source;
-  source.headers = read_frame_headers(s.job.input, scheduled.frame, s.job.roles, s.jitter);
-  check_same_subjects(s.info.first, source.headers, s.plan);
-  // Frames that wait in a window do so without what only passes through.
-  const bool whole_parts = s.job.request.keep_channels && s.reach.back_to_restart;
-  const bool as_stored = s.job.parameters.accumulator != Accumulator::recursive;
-  const Plan& plan = s.plan;
-  source.pixels = in_frame(scheduled.frame, [&] {
-    return read_files(source.headers,
-                      {.depth = plan.use_depth,
-                       .motion = plan.use_motion,
-                       .whole_parts = whole_parts,
-                       .forward = plan.use_forward,
-                       .id = plan.use_id,
-                       .normal = plan.use_normal,
-                       .reactive = plan.use_reactive,
-                       .responsive = plan.use_responsive},
-                      workers);
-  });
-  const ReadOptions options{.motion = s.job.parameters.motion,
-                            .use_depth = plan.use_depth,
-                            .use_motion = plan.use_motion,
-                            .use_forward = plan.use_forward,
-                            .as_stored = as_stored,
-                            .use_id = plan.use_id,
-                            .use_normal = plan.use_normal,
-                            .use_reactive = plan.use_reactive,
-                            .use_responsive = plan.use_responsive};
-  for (std::size_t k = 0; k < source.headers.subjects.size(); ++k) {
-    const Subject& subject = source.headers.subjects[k];
-    const Part& part = source.headers.files.front().parts[std::size_t(part_of(subject))];
-    if (scheduled.restart) states[k].forward = {};
-    source.presents.push_back(read_present(subject, source.pixels, part.data_window, part.display_window, options,
-                                           s.into_working_space ? &*s.into_working_space : nullptr, states[k].forward,
-                                           source.vectors_bad, workers));
-  }
-  if (!s.reach.back_to_restart) source.pixels.clear();
-  return source;
 }
 
 /// The file's pixels as stored, for what stands beside the color when it is written.
@@ -233,16 +136,14 @@ void look_for_cut(const SourceFrame& source, FrameTrace& before, ScheduledFrame&
   before = std::move(now);
 }
 
-Resolved resolve_recursive(const Setup& s, const FrameHeaders& headers, const Present& present,
-                           const ScheduledFrame& scheduled, SubjectState& state, Workers& workers) {
+Resolved resolve_recursive(const Setup& s, const Present& present, const ScheduledFrame& scheduled, SubjectState& state,
+                           Workers& workers) {
   const Parameters& parameters = s.job.parameters;
   if (scheduled.restart) state.history = {};
   Resolved r;
-  std::optional<glm::dvec2> jitter;
-  if (headers.jitter) jitter = glm::dvec2(headers.jitter->x, headers.jitter->y);
   const std::uint32_t restart_bit = scheduled.restart_reason == "first frame" ? kRejectFirstFrame : kRejectCut;
-  r.accumulated = accumulate(present, state.history, parameters.recursive, parameters.rectify, jitter, restart_bit,
-                             diagnostics_wanted(s.aovs), workers);
+  r.accumulated = accumulate(present, state.history, parameters.recursive, parameters.rectify, present.jitter,
+                             restart_bit, diagnostics_wanted(s.aovs), workers);
   const auto is_prediction = [](const Aov* aov) { return aov->name == "prediction"; };
   if (std::any_of(s.aovs.begin(), s.aovs.end(), is_prediction))
     r.prediction = predict(present, state.history, parameters.recursive, parameters.rectify, workers);
@@ -253,7 +154,7 @@ std::vector<Resolved> resolve_recursive(const Setup& s, const SourceFrame& sourc
                                         std::vector<SubjectState>& states, Workers& workers) {
   std::vector<Resolved> resolved;
   for (std::size_t k = 0; k < source.presents.size(); ++k)
-    resolved.push_back(resolve_recursive(s, source.headers, source.presents[k], scheduled, states[k], workers));
+    resolved.push_back(resolve_recursive(s, source.presents[k], scheduled, states[k], workers));
   return resolved;
 }
 
@@ -351,7 +252,21 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
   Workers workers(job.threads);
   std::vector<SubjectState> states(s.info.first.subjects.size());
   FrameTrace trace;
-  const auto read = [&](std::size_t index) { return read_frame(s, schedule[index], states, workers); };
+  const bool recursive = job.parameters.accumulator == Accumulator::recursive;
+  const SourceOptions source_options{s.job,
+                                     s.info,
+                                     s.plan,
+                                     s.jitter,
+                                     s.into_working_space ? &*s.into_working_space : nullptr,
+                                     s.reach.back_to_restart};
+  const auto read = [&](std::size_t index) {
+    SourceFrame source = read_source_frame(source_options, schedule[index].frame, workers);
+    for (std::size_t k = 0; recursive && k < source.presents.size(); ++k) {
+      if (schedule[index].restart) states[k].forward = {};
+      follow_motion(source.presents[k], job.parameters.motion, states[k].forward, workers);
+    }
+    return source;
+  };
   FrameWindow window(read);
   ResolveSummary summary;
   int total = 0, done = 0;
@@ -411,7 +326,7 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     if (scheduled.write && !scheduled.complete) {
       std::vector<ResolvedSubject> subjects;
       for (std::size_t k = 0; k < resolved.size(); ++k)
-        subjects.push_back({&source.headers.subjects[k], &source.presents[k], &resolved[k].accumulated,
+        subjects.push_back({&source.headers.outputs[k].subject, &source.presents[k], &resolved[k].accumulated,
                             &resolved[k].prediction, &resolved[k].finished});
       const FileSet beside = source.pixels.empty() ? read_beside(s, source.headers, workers) : FileSet();
       const FileSet& pixels = source.pixels.empty() ? beside : source.pixels;

@@ -307,7 +307,18 @@ std::vector<Subject> find_subjects(std::span<const FileHeader> files, const Role
     subjects.push_back(std::move(subject));
   }
   add_channels(index, request, subjects);
+  for (Subject& subject : subjects) {
+    subject.place.part = part_of(subject);
+    for (std::size_t k = 0; k < 4; ++k)
+      if (subject.color[k]) subject.place.channels[k] = index.channel(*subject.color[k]);
+  }
   return subjects;
+}
+
+std::vector<ColorOutput> outputs_apart(std::span<const Subject> subjects) {
+  std::vector<ColorOutput> outputs;
+  for (const Subject& subject : subjects) outputs.push_back({subject, {outputs.size()}});
+  return outputs;
 }
 
 }  // namespace varve

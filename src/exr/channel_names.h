@@ -24,6 +24,12 @@ struct Companion {
   std::array<std::optional<ChannelRef>, 4> channels;
 };
 
+/// Where a resolved color is written.
+struct ColorPlace {
+  int part = 0;                                    ///< of file 0; lends its name, view, windows and attributes
+  std::array<std::optional<Channel>, 4> channels;  ///< R G B A as they are stored
+};
+
 /// One thing to be resolved: a color with its own depth and motion, in one view.
 struct Subject {
   std::string
@@ -31,7 +37,8 @@ struct Subject {
   std::string view;  ///< "" when the file has no views
   bool default_view = true;
   std::array<std::optional<ChannelRef>, 4>
-      color;  ///< R G B A; a lone channel stands in the place of its name, Y in that of G
+      color;         ///< R G B A; a lone channel stands in the place of its name, Y in that of G
+  ColorPlace place;  ///< where the color was, unless several subjects make one color
   std::vector<Companion> companions;
   std::optional<ChannelRef> depth;
   std::optional<ChannelRef> id;  ///< object index, or the first rank of a Cryptomatte
@@ -42,6 +49,12 @@ struct Subject {
   std::string convention;  ///< row of the convention table; "" when no vectors were found
   double background_depth = 1e10;
   std::vector<std::string> notes;  ///< what was assumed and from what evidence, a sentence each
+};
+
+/// One color that is written, and the subjects that it is made from.
+struct ColorOutput {
+  Subject subject;                  ///< its name, its place and what is said of it
+  std::vector<std::size_t> inputs;  ///< places among the subjects of the frame
 };
 
 /// The part that holds the subject's color.
@@ -80,6 +93,9 @@ struct RoleRequest {
 /// when no color is found, when a named layer or channel does not exist (naming what does), and when vectors are there
 /// but their convention is not told by their names and not given. Further channels are found as add_channels says.
 std::vector<Subject> find_subjects(std::span<const FileHeader> files, const RoleRequest& request);
+
+/// Every subject for itself.
+std::vector<ColorOutput> outputs_apart(std::span<const Subject> subjects);
 
 /// What a channel holds, as far as its name says; for pass-through rules and for probe.
 enum class ChannelClass { color, alpha, depth, motion, normal, position, uv, id, cryptomatte, other };

@@ -24,6 +24,7 @@ struct FrameHeaders {
   int frame = 0;
   std::vector<FileHeader> files;  ///< color file, then the role files
   std::vector<Subject> subjects;  ///< found again in each frame, since parts and channels may move
+  std::vector<ColorOutput> outputs;
   std::optional<Jitter> jitter;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -23,7 +24,9 @@ struct Present {
                                                  ///< empty
   Plane<float> valid;                    ///< 1 where color came finite from the file, 0 elsewhere and in the border
   std::vector<std::uint8_t> rows_valid;  ///< per row: 1 when every pixel of it is valid
-  Plane<glm::vec2> motion;     ///< dilated backward motion, pixels, y down; NaN where unusable; empty: at rest
+  std::optional<glm::dvec2> jitter;      ///< sample position minus pixel centre, pixels; none where it is not known
+  Plane<glm::vec2> motion;     ///< backward motion, pixels, y down; NaN where unusable; empty: at rest. As stored, or
+                               ///< dilated by follow_motion()
   Plane<glm::vec2> forward;    ///< the same to the next frame; empty unless asked for and in the file
   Plane<float> depth;          ///< of the surface that lent the motion, +inf for background; may be empty
   Plane<std::uint32_t> id;     ///< of that surface, to be compared only; empty unless the plan needs it

@@ -4,19 +4,10 @@
 #include <cstddef>
 #include <functional>
 #include <map>
-#include <vector>
 
-#include "stages/read_present.h"
+#include "stages/source_frame.h"
 
 namespace varve {
-
-/// One frame as the accumulators see it.
-struct SourceFrame {
-  FrameHeaders headers;
-  FileSet pixels;                 ///< as stored; empty where the frame is read again when it is written
-  std::vector<Present> presents;  ///< one for each of headers.subjects
-  std::size_t vectors_bad = 0;    ///< vectors that cannot be used
-};
 
 /// Frames by their place in the schedule. Memory is bounded by the widest span held, never by the sequence.
 class FrameWindow {

@@ -31,7 +31,7 @@ struct SubjectFrames {
     SurfaceBlocks& blocks = memory[i].blocks;
     if (blocks.blocks.empty()) blocks = summarize_surfaces(present(i));
     s.blocks = &blocks;
-    if (const auto& jitter = window[i].headers.jitter) s.jitter = {jitter->x, jitter->y};
+    if (s.present->jitter) s.jitter = *s.present->jitter;
     return s;
   }
 

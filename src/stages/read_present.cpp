@@ -172,8 +172,8 @@ Plane<glm::vec2> read_vectors(const VectorChannels& channels, const MotionEncodi
 }
 
 Present read_present(const Subject& subject, const FileSet& pixels, const Window& window, const Window& display_window,
-                     const ReadOptions& options, const ColorConversion* into_working_space, ForwardMemory& memory,
-                     std::size_t& vectors_bad, Workers& workers) {
+                     const ReadOptions& options, const ColorConversion* into_working_space, std::size_t& vectors_bad,
+                     Workers& workers) {
   Present present;
   present.color = read_color(subject, pixels, window, workers);
   if (into_working_space) into_working_space->apply(present.color, workers);
@@ -185,55 +185,26 @@ Present read_present(const Subject& subject, const FileSet& pixels, const Window
   }
   sanitize_companions(present, workers);
 
-  Plane<float> depth;
   if (options.use_depth && subject.depth) {
-    depth = read_plane(pixels_of(pixels, *subject.depth), window, std::numeric_limits<float>::infinity(), workers);
-    canonical_depth(depth, options.motion.depth_kind, subject.background_depth, workers);
+    present.depth =
+        read_plane(pixels_of(pixels, *subject.depth), window, std::numeric_limits<float>::infinity(), workers);
+    canonical_depth(present.depth, options.motion.depth_kind, subject.background_depth, workers);
   }
-  SurfaceMarks marks;
-  if (options.use_id && subject.id) marks.id = read_id(pixels_of(pixels, *subject.id), window, workers);
-  if (options.use_normal && subject.normal) marks.normal = read_normal(*subject.normal, pixels, window, workers);
+  if (options.use_id && subject.id) present.id = read_id(pixels_of(pixels, *subject.id), window, workers);
+  if (options.use_normal && subject.normal) present.normal = read_normal(*subject.normal, pixels, window, workers);
   if (options.use_reactive && subject.reactive)
     present.reactive = read_mask(pixels_of(pixels, *subject.reactive), window, 0, 1, workers);
   if (options.use_responsive && subject.responsive)
     present.responsive = read_mask(pixels_of(pixels, *subject.responsive), window, 1, 1e6f, workers);
-  const auto keep = [&present](DilatedMotion followed) {
-    present.motion = std::move(followed.motion);
-    present.depth = std::move(followed.depth);
-    present.id = std::move(followed.marks.id);
-    present.normal = std::move(followed.marks.normal);
-  };
-  if (!options.use_motion || (!subject.backward && !subject.forward)) {
-    keep({{}, std::move(depth), std::move(marks)});
-    return present;
-  }
+  if (!options.use_motion) return present;
 
   const auto read = [&](const VectorChannels& channels, const MotionEncoding& encoding) {
     return read_vectors(channels, encoding, pixels, window, display_window, options.motion.max_length, vectors_bad,
                         workers);
   };
-  if (options.use_forward && subject.forward) {
+  if (subject.backward) present.motion = read(*subject.backward, subject.backward_encoding);
+  if (subject.forward && (options.use_forward || !subject.backward))
     present.forward = read(*subject.forward, subject.forward_encoding);
-    if (!options.as_stored)
-      present.forward = dilate_motion(std::move(present.forward), depth, options.motion.dilation, workers).motion;
-  }
-
-  // Backward vectors from the file; or the previous frame's forward vectors turned round.
-  Plane<glm::vec2> motion;
-  if (subject.backward) {
-    motion = read(*subject.backward, subject.backward_encoding);
-  } else if (!options.as_stored) {
-    Plane<glm::vec2> forward = read(*subject.forward, subject.forward_encoding);
-    motion = invert_forward_motion(memory.motion, memory.depth, forward);
-    memory = {std::move(forward), depth.empty() ? Plane<float>() : depth.clone()};
-  } else {
-    keep({{}, std::move(depth), std::move(marks)});
-    return present;
-  }
-  if (options.as_stored)
-    keep({std::move(motion), std::move(depth), std::move(marks)});
-  else
-    keep(dilate_motion(std::move(motion), depth, options.motion.dilation, workers, std::move(marks)));
   return present;
 }
 

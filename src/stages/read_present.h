@@ -27,28 +27,19 @@ struct ChannelNeeds {
 /// Reads what a frame needs, each channel once. Throws what read_channels throws.
 FileSet read_files(const FrameHeaders& headers, const ChannelNeeds& needs, Workers& workers);
 
-/// What reading one subject leaves to the next frame: needed where only forward vectors are in the file.
-struct ForwardMemory {
-  Plane<glm::vec2> motion;
-  Plane<float> depth;
-  bool empty() const { return motion.empty(); }
-};
-
 struct ReadOptions {
   MotionParameters motion;
   bool use_depth = false;  ///< depth is decoded and kept with the present
   bool use_motion = false;
   bool use_forward = false;  ///< vectors to the next frame too, where the file has them
-  bool as_stored = false;    ///< vectors are not dilated, and not made where the file has none in that direction
   bool use_id = false, use_normal = false, use_reactive = false, use_responsive = false;  ///< likewise
 };
 
-/// Converts one subject. `into_working_space` may be null. `memory` holds the previous frame's forward vectors where
-/// they are needed, and is replaced by this frame's; clear it at a restart. `vectors_bad` counts vectors that cannot be
-/// used.
+/// Converts one subject; vectors stay as stored, those to the next frame are read where they are asked for or are all
+/// there is. `into_working_space` may be null. `vectors_bad` counts vectors that cannot be used.
 Present read_present(const Subject& subject, const FileSet& pixels, const Window& window, const Window& display_window,
-                     const ReadOptions& options, const ColorConversion* into_working_space, ForwardMemory& memory,
-                     std::size_t& vectors_bad, Workers& workers);
+                     const ReadOptions& options, const ColorConversion* into_working_space, std::size_t& vectors_bad,
+                     Workers& workers);
 
 /// Stored vectors over `window` in pixels, y down; NaN where their own window has none, and where they cannot be used.
 Plane<glm::vec2> read_vectors(const VectorChannels& channels, const MotionEncoding& encoding, const FileSet& files,

@@ -8,13 +8,11 @@
 namespace varve {
 namespace {
 
-/// Puts the motion of this side into the presents, and passes each to `step(present, state, jitter)`.
+/// Puts the motion of this side into the presents, and passes each to `step(k, present, state)`.
 template <class Step>
 void pass_subjects(SideRun& run, SourceFrame& source, const SharedVectors& vectors, const Parameters& parameters,
                    Workers& workers, Step step) {
   run.states.resize(source.presents.size());
-  std::optional<glm::dvec2> jitter;
-  if (source.headers.jitter) jitter = glm::dvec2(source.headers.jitter->x, source.headers.jitter->y);
   for (std::size_t k = 0; k < source.presents.size(); ++k) {
     Present& present = source.presents[k];
     const FrameVectors* neighbor = run.neighbor ? &(*run.neighbor)[k] : nullptr;
@@ -23,7 +21,7 @@ void pass_subjects(SideRun& run, SourceFrame& source, const SharedVectors& vecto
     present.depth = std::move(dilated.depth);
     present.id = std::move(dilated.marks.id);
     present.normal = std::move(dilated.marks.normal);
-    run.states[k] = step(k, present, run.states[k], jitter);
+    run.states[k] = step(k, present, run.states[k]);
   }
   run.neighbor = vectors;
 }
@@ -68,13 +66,12 @@ std::vector<StrictSide> pass_frame(SideRun& run, SourceFrame& source, const Shar
                                    const StepOptions& options, Workers& workers) {
   const Parameters& p = options.parameters;
   std::vector<StrictSide> strict;
-  pass_subjects(run, source, vectors, p, workers,
-                [&](std::size_t, const Present& present, const History& state, std::optional<glm::dvec2> jitter) {
-                  SideStep step = accumulate_side(present, state, p.recursive, p.rectify, jitter, kRejectCut,
-                                                  options.wanted, workers);
-                  strict.push_back(std::move(step.strict));
-                  return std::move(step.state);
-                });
+  pass_subjects(run, source, vectors, p, workers, [&](std::size_t, const Present& present, const History& state) {
+    SideStep step =
+        accumulate_side(present, state, p.recursive, p.rectify, present.jitter, kRejectCut, options.wanted, workers);
+    strict.push_back(std::move(step.strict));
+    return std::move(step.state);
+  });
   return strict;
 }
 
@@ -83,13 +80,12 @@ std::vector<Accumulated> merge_frame(SideRun& run, SourceFrame& source, const Sh
                                      Workers& workers) {
   const Parameters& p = options.parameters;
   std::vector<Accumulated> resolved;
-  pass_subjects(run, source, vectors, p, workers,
-                [&](std::size_t k, const Present& present, const History& state, std::optional<glm::dvec2> jitter) {
-                  MergedStep step = accumulate_both(present, state, others[k], p.recursive, p.rectify, jitter,
-                                                    kRejectCut, options.wanted, workers);
-                  resolved.push_back(std::move(step.resolved));
-                  return std::move(step.state);
-                });
+  pass_subjects(run, source, vectors, p, workers, [&](std::size_t k, const Present& present, const History& state) {
+    MergedStep step = accumulate_both(present, state, others[k], p.recursive, p.rectify, present.jitter, kRejectCut,
+                                      options.wanted, workers);
+    resolved.push_back(std::move(step.resolved));
+    return std::move(step.state);
+  });
   return resolved;
 }
 

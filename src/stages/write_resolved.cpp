@@ -66,17 +66,16 @@ Plane<glm::vec4> color_to_write(const Plane<glm::vec4>& resolved, const ColorCon
 }
 
 /// The resolved color in the stored types of its channels.
-void add_color(FileOutput& out, OutputPart& to, const Part& part, const ResolvedSubject& resolved,
-               const ColorConversion* conversion, Workers& workers) {
+void add_color(FileOutput& out, OutputPart& to, const ResolvedSubject& resolved, const ColorConversion* conversion,
+               Workers& workers) {
   const Plane<glm::vec4> converted = color_to_write(resolved.color(), conversion, workers);
   const Plane<glm::vec4>& color = converted.empty() ? resolved.color() : converted;
   const Window& window = color.window();
   std::array<RawPlane*, 4> planes{};
   for (std::size_t k = 0; k < 4; ++k)
-    if (const auto& ref = resolved.subject->color[k]) {
-      const Channel& channel = part.channels[std::size_t(ref->channel)];
-      planes[k] = &out.planes.emplace_back(make_raw_plane(channel.type, window));
-      to.channels.push_back({channel, planes[k]});
+    if (const auto& channel = resolved.subject->place.channels[k]) {
+      planes[k] = &out.planes.emplace_back(make_raw_plane(channel->type, window));
+      to.channels.push_back({*channel, planes[k]});
     }
   std::atomic<std::size_t> overflows = 0;
   workers.for_rows(window.y0, window.y1, [&](int y) {
@@ -177,9 +176,9 @@ FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
     std::set<std::string> stale;
     for (const ResolvedSubject& resolved : subjects) {
       add_companions(out, to, part, p, pixels, resolved, out_of_working_space, workers);
-      if (part_of(*resolved.subject) != p) continue;
+      if (resolved.subject->place.part != p) continue;
       stale.merge(stale_diagnostics(*resolved.subject));
-      add_color(out, to, part, resolved, out_of_working_space, workers);
+      add_color(out, to, resolved, out_of_working_space, workers);
       add_diagnostics(out, to, resolved, aovs, several, workers);
     }
     to.copy_chunks = to.channels.empty();
@@ -198,7 +197,7 @@ FileOutput diagnostic_parts(const FileHeader& source, const std::vector<Resolved
     OutputPart to;
     to.source_part = p;
     for (const ResolvedSubject& resolved : subjects)
-      if (part_of(*resolved.subject) == p) add_diagnostics(out, to, resolved, aovs, several, workers);
+      if (resolved.subject->place.part == p) add_diagnostics(out, to, resolved, aovs, several, workers);
     if (!to.channels.empty()) out.parts.push_back(std::move(to));
   }
   return out;

@@ -41,11 +41,10 @@ struct Frame {
   RawPlane& plane(std::size_t k) { return files[0].planes[0][k]; }
   Present read(const Window& w, bool wanted = true) {
     Workers workers(2);
-    ForwardMemory memory;
     std::size_t bad = 0;
     const ReadOptions options{
         .motion = {}, .use_id = wanted, .use_normal = wanted, .use_reactive = wanted, .use_responsive = wanted};
-    return read_present(subject, files, w, w, options, nullptr, memory, bad, workers);
+    return read_present(subject, files, w, w, options, nullptr, bad, workers);
   }
 };
 
