@@ -18,13 +18,19 @@ namespace varve {
 /// longest (Salvi 2016). Either keeps the antialiased rim of a moving thing moving with it.
 enum class Dilation { none, nearest, longest };
 
-/// What a depth channel counts: distance (larger is farther), 1/distance, or negative z.
-enum class DepthKind { distance, inverse, negative };
+/// What a depth channel counts: distance along the view axis (larger is farther), 1/distance, negative z, or distance
+/// from the eye along the ray.
+enum class DepthKind { distance, inverse, negative, ray };
+
+/// What motion is taken from cameras: that of subjects without any vectors only; also that of background whose vectors
+/// are zero; also zoom and lens shift where vectors lack them; or all of it.
+enum class CameraUse { missing, background, zoom, all };
 
 struct MotionParameters {
   Dilation dilation = Dilation::longest;
   double max_length = 16384;  ///< px; a longer vector is unusable
   DepthKind depth_kind = DepthKind::distance;
+  CameraUse camera = CameraUse::missing;
 };
 
 /// Stored vectors to pixels, y down: `decoded = sign * ((v - bias) * scale) / shutter`, then the unit. `x` and `y`
@@ -34,7 +40,8 @@ Plane<glm::vec2> decode_motion(const Plane<float>& x, const Plane<float>& y, con
                                const Window& display_window, double max_length, Workers& workers,
                                std::size_t& unusable);
 
-/// Depth in the program's terms: planar distance, larger is farther, background +inf. Background is: not finite, zero
+/// Depth in the program's terms: distance, larger is farther, background +inf; planar, except that ray distances stay
+/// until a camera makes them so (ray_to_planar_depth). Background is: not finite, zero
 /// or below (as a distance), or from `background` on.
 void canonical_depth(Plane<float>& depth, DepthKind kind, double background, Workers& workers);
 

@@ -60,6 +60,9 @@ std::vector<Knob> knobs() {
       {"depth-kind", "WORD", motion, advanced, "What the numbers of the depth channel mean.",
        word(
            [](auto& p) -> auto& { return p.motion.depth_kind; }, kDepthKinds)},
+      {"camera-motion", "WORD", motion, advanced, "Which motion is taken from the cameras, where --camera finds them.",
+       word(
+           [](auto& p) -> auto& { return p.motion.camera; }, kCameraUses)},
 
       {"accumulator", "WORD", history, basic, "How frames are combined.",
        word(

@@ -20,6 +20,13 @@ constexpr Word<DepthKind> kDepthKinds[] = {
     {"distance", DepthKind::distance, "larger is farther"},
     {"inverse", DepthKind::inverse, "one over the distance, larger is nearer"},
     {"negative", DepthKind::negative, "minus the distance, as along a camera's -Z"},
+    {"ray", DepthKind::ray, "distance from the eye along the ray; made planar where the camera is known"},
+};
+constexpr Word<CameraUse> kCameraUses[] = {
+    {"missing", CameraUse::missing, "only where a layer has depth but no vectors: what rests in the world moves"},
+    {"background", CameraUse::background, "also background whose vectors are zero, such as a textured sky"},
+    {"zoom", CameraUse::zoom, "also animated zoom and lens shift, where the vectors are found to lack them"},
+    {"all", CameraUse::all, "missing, background and zoom"},
 };
 constexpr Word<AlphaRule> kAlphaRules[] = {
     {"fixed", AlphaRule::fixed, "always --alpha"},

@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "base/error.h"
-#include "base/json.h"
+#include "plan/camera_survey.h"
 
 namespace varve {
 namespace {
@@ -52,29 +52,6 @@ void find_gaps(SequenceInfo& info) {
                          " apart; vectors fit only if they were rendered for that distance");
 }
 
-/// What gives the camera away in one header.
-struct CameraSigns {
-  bool matrices = false;  ///< worldToCamera or worldToNDC
-  bool note = false;      ///< view and proj in the JSON of Note
-};
-
-CameraSigns camera_signs(const FileHeader& file) {
-  CameraSigns signs;
-  for (const Part& part : file.parts)
-    for (const Attribute& a : part.attributes) {
-      if ((a.name == "worldToCamera" || a.name == "worldToNDC") && a.numbers.size() == 16) signs.matrices = true;
-      if (a.name != "Note" || signs.note) continue;
-      const std::optional<JsonValue> note = parse_json(a.text);
-      const auto matrix = [&](const char* name) {
-        const JsonValue* member = note ? note->find(name) : nullptr;
-        const std::optional<std::vector<double>> numbers = member ? member->numbers() : std::nullopt;
-        return numbers && numbers->size() == 16;
-      };
-      signs.note = matrix("view") && matrix("proj");
-    }
-  return signs;
-}
-
 std::set<std::string> channel_names(const FrameHeaders& frame) {
   std::set<std::string> names;
   for (const FileHeader& file : frame.files)
@@ -107,15 +84,12 @@ void compare_windows(const FrameHeaders& frame, SequenceInfo& info) {
 struct Survey {
   SequenceInfo& info;
   std::set<std::string> first_names;
-  int matrices = 0, notes = 0;
+  CameraSurvey cameras;
   std::size_t differing = 0;
 
   void add(const FrameHeaders& frame) {
     if (frame.jitter) ++info.frames_with_jitter;
-    const CameraSigns signs = camera_signs(frame.files.front());
-    matrices += signs.matrices;
-    notes += signs.note;
-    info.frames_with_camera += signs.matrices || signs.note;
+    cameras.add(frame.frame, frame.cameras);
     compare_windows(frame, info);
     const std::set<std::string> names = channel_names(frame);
     if (names == first_names || ++differing > kMaxDifferences) return;
@@ -127,13 +101,10 @@ struct Survey {
 
   void finish(const JitterSource& jitter) {
     const std::string of = " of " + std::to_string(info.frames.size()) + " frames";
+    cameras.finish(info);
     if (differing > kMaxDifferences)
       info.notes.push_back("the channels of " + std::to_string(differing - kMaxDifferences) +
                            " more frames differ as well");
-    info.camera = "none found";
-    if (matrices > 0) info.camera = "worldToCamera or worldToNDC in " + std::to_string(matrices) + of;
-    if (matrices == 0 && notes > 0)
-      info.camera = "view and proj in the attribute Note in " + std::to_string(notes) + of;
     const std::string in = " in " + std::to_string(info.frames_with_jitter) + of;
     switch (jitter.kind) {
       case JitterSource::Kind::none:
@@ -199,7 +170,7 @@ void note_parts(const SequenceInfo& info, std::vector<std::string>& notes) {
 }  // namespace
 
 FrameHeaders read_frame_headers(const InputSequence& input, int frame, const RoleRequest& roles,
-                                const JitterSource& jitter) {
+                                const JitterSource& jitter, const CameraSource& cameras) {
   FrameHeaders headers;
   headers.frame = frame;
   try {
@@ -212,6 +183,7 @@ FrameHeaders read_frame_headers(const InputSequence& input, int frame, const Rol
       if (channel && !headers.jitter)
         headers.jitter = jitter_of(jitter, headers.files.front().parts[std::size_t(channel->part)], frame);
     if (!headers.jitter) headers.jitter = jitter_of(jitter, headers.files.front().parts.front(), frame);
+    headers.cameras = cameras_of(headers, cameras);
   } catch (const Failure& failure) {
     const std::string sentence = failure.what();
     throw Failure(failure.code(), sentence.starts_with("frame ") ? sentence : at_frame(frame) + sentence);
@@ -220,17 +192,17 @@ FrameHeaders read_frame_headers(const InputSequence& input, int frame, const Rol
 }
 
 SequenceInfo probe_sequence(const InputSequence& input, const std::vector<int>& frames, const RoleRequest& roles,
-                            const JitterSource& jitter) {
+                            const JitterSource& jitter, const CameraSource& cameras) {
   SequenceInfo info;
   info.frames = frames_to_probe(input, frames);
   std::sort(info.frames.begin(), info.frames.end());
   info.frames.erase(std::unique(info.frames.begin(), info.frames.end()), info.frames.end());
   find_gaps(info);
-  info.first = read_frame_headers(input, info.frames.front(), roles, jitter);
+  info.first = read_frame_headers(input, info.frames.front(), roles, jitter, cameras);
   Survey survey{info, channel_names(info.first)};
   survey.add(info.first);
   for (std::size_t i = 1; i < info.frames.size(); ++i)
-    survey.add(read_frame_headers(input, info.frames[i], roles, jitter));
+    survey.add(read_frame_headers(input, info.frames[i], roles, jitter, cameras));
   survey.finish(jitter);
   if (info.windows_move) info.notes.push_back("the data window moves between frames; outside it there is no data");
   if (info.windows_differ)

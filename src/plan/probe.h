@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "exr/camera_source.h"
 #include "exr/channel_names.h"
 #include "exr/jitter.h"
 #include "exr/sequence.h"
@@ -26,12 +27,13 @@ struct FrameHeaders {
   std::vector<Subject> subjects;  ///< found again in each frame, since parts and channels may move
   std::vector<ColorOutput> outputs;
   std::optional<Jitter> jitter;
+  std::vector<FoundCamera> cameras;  ///< one for each of subjects
 };
 
 /// Reads and checks the headers of one frame. Throws Failure(input) naming file and frame, or what find_subjects
 /// throws.
 FrameHeaders read_frame_headers(const InputSequence& input, int frame, const RoleRequest& roles,
-                                const JitterSource& jitter);
+                                const JitterSource& jitter, const CameraSource& cameras = {});
 
 /// A sequence at a glance.
 struct SequenceInfo {
@@ -44,13 +46,14 @@ struct SequenceInfo {
   std::string jitter_source;  ///< "none found", or where from
   std::string camera;         ///< "none found", or which attributes, and in how many frames
   int frames_with_camera = 0;
+  CameraTrack cameras;             ///< by frame
   std::vector<std::string> notes;  ///< channels that differ between frames, a jitter.csv beside the frames, ...
 };
 
 /// Reads every header of the chosen frames (empty: all on disk). Throws Failure(input) when a file is missing or
 /// broken.
 SequenceInfo probe_sequence(const InputSequence& input, const std::vector<int>& frames, const RoleRequest& roles,
-                            const JitterSource& jitter);
+                            const JitterSource& jitter, const CameraSource& cameras = {});
 
 /// The numbers of a few frames, for `probe --pixels`: ranges and bad values of each channel that has a role.
 struct ChannelStatistics {

@@ -22,6 +22,7 @@ struct ResolveJob {
   bool find_cuts = false;                      ///< look for more of them in the pixels
   RoleRequest roles;
   std::string jitter = "auto";  ///< see parse_jitter_source
+  std::string camera = "auto";  ///< see parse_camera_source
   Parameters parameters;
   OutputRequest request;
   std::optional<Compression> compression;
