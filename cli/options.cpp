@@ -140,6 +140,14 @@ void add_channel_options(std::vector<Option>& rows) {
        text(
            [](auto& s) -> auto& { return s.job.jitter; }, "auto, none, a CSV file or a pattern such as halton23:16")})
       .completes = Completes::files;
+  add({"camera", 0, "SOURCE", kInput, kAdvanced, group,
+       "Where the camera of each frame is told. auto reads worldToCamera and worldToNDC, or view and proj in the JSON "
+       "of Cycles' Note. A CSV file has the columns frame, v0 to v15 (world to camera, row major, looking along -z, y "
+       "up) and either p0 to p15 (camera to clip space, as OpenGL has it) or focal and aperture (width of the film, "
+       "same unit); JSON is a list of objects with frame, view and proj or focal and aperture.",
+       text(
+           [](auto& s) -> auto& { return s.job.camera; }, "auto, off, or a CSV or JSON file")})
+      .completes = Completes::files;
 }
 
 void add_motion_options(std::vector<Option>& rows) {
@@ -197,7 +205,9 @@ void add_parameter_options(std::vector<Option>& rows) {
   rows.back().topic = "presets";
   for (const Knob& knob : knobs()) {
     // What says how to read the input matters to probe as well.
-    const unsigned commands = knob.name == "depth-kind" ? kInput : unsigned(kResolve);
+    const unsigned commands = knob.name == "depth-kind"      ? kInput
+                              : knob.name == "camera-motion" ? kResolve | kProbe
+                                                             : unsigned(kResolve);
     rows.push_back({std::string(knob.name), 0, std::string(knob.metavar), commands, knob.tier, std::string(knob.group),
                     std::string(knob.meaning), knob_value(knob)});
   }

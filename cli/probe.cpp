@@ -12,7 +12,7 @@ int run_probe(Settings& settings) {
   finish_job(settings);
   const ResolveJob& job = settings.job;
   const JitterSource jitter = parse_jitter_source(job.jitter);
-  const SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
+  const SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter, parse_camera_source(job.camera));
   const Plan plan = make_plan(info, job.parameters, job.request, job.threads);
   std::vector<ChannelStatistics> statistics;
   if (settings.pixels > 0) {

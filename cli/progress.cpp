@@ -32,6 +32,13 @@ int terminal_columns() {
 
 std::string count_text(std::size_t count, const char* what) { return ", " + std::to_string(count) + " " + what; }
 
+std::string share_text(std::size_t part, std::size_t whole, const char* what) {
+  char text[120];
+  std::snprintf(text, sizeof text, ", %.1f %% %s", 100.0 * double(part) / double(std::max<std::size_t>(whole, 1)),
+                what);
+  return text;
+}
+
 // Lights of which a part only was named say nothing by their sum.
 bool add_up(const LightSum& lights) { return lights.pixels > 0 && lights.adding_up == lights.pixels; }
 
@@ -57,6 +64,8 @@ JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
       .number("pixels", double(report.pixels))
       .number("not_finite", double(report.not_finite))
       .number("vectors_bad", double(report.vectors_bad))
+      .number("by_camera", double(report.by_camera))
+      .number("lens_added", double(report.lens_added))
       .number("restarted", double(report.restarted))
       .number("clipped", double(report.clipped))
       .number("half_overflows", double(report.half_overflows))
@@ -99,6 +108,8 @@ std::string frame_line(const FrameReport& report, int done, int total) {
       line += count_text(report.companions_not_finite, "values of --channels repaired that were not finite");
     if (add_up(report.lights)) line += residual_text(report.lights);
     if (report.vectors_bad > 0) line += count_text(report.vectors_bad, "unusable vectors");
+    if (report.by_camera > 0) line += share_text(report.by_camera, report.pixels, "of the vectors by the camera");
+    if (report.lens_added > 0) line += share_text(report.lens_added, report.pixels, "of the vectors with zoom added");
     if (report.half_overflows > 0) line += count_text(report.half_overflows, "values beyond half held at 65504");
   }
   return line + ", PROGRESS: " + std::to_string(percent(done, total)) + "%";

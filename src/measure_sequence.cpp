@@ -215,7 +215,8 @@ Measurement measure_sequence(const MeasureJob& asked, const MeasureEvents& event
   Measurement m;
   MeasureJob job = asked;
   const SequenceInfo info =
-      probe_sequence(job.resolve.input, job.resolve.frames, job.resolve.roles, parse_jitter_source(job.resolve.jitter));
+      probe_sequence(job.resolve.input, job.resolve.frames, job.resolve.roles, parse_jitter_source(job.resolve.jitter),
+                     parse_camera_source(job.resolve.camera));
   check_roles(job.resolve, info);
   if (job.skip_impossible) job.settings = possible_settings(asked, info, events);
   m.baseline = find_baseline(job);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <set>
 #include <utility>
 
 #include "base/error.h"
@@ -35,6 +36,7 @@ struct Setup {
   SequenceInfo info;
   Plan plan;
   JitterSource jitter;
+  CameraSource cameras;
   std::string parameters, hash;
   FrameReach reach;
   GatherParameters gather;
@@ -57,7 +59,8 @@ class Stopwatch {
 
 Setup set_up(const ResolveJob& job) {
   const JitterSource jitter = parse_jitter_source(job.jitter);
-  SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
+  CameraSource cameras = parse_camera_source(job.camera);
+  SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter, cameras);
   check_roles(job, info);
   // By the time that its pixels show a cut, a frame has met those after it already.
   if (job.find_cuts && job.parameters.accumulator != Accumulator::recursive)
@@ -69,6 +72,7 @@ Setup set_up(const ResolveJob& job) {
           std::move(info),
           std::move(plan),
           jitter,
+          std::move(cameras),
           {},
           {},
           reach_of(job),
@@ -187,6 +191,8 @@ Plane<glm::vec4> finish(const Present& present, const History& resolved, const P
 
 void count(FrameReport& report, const SourceFrame& source, const std::vector<Resolved>& resolved, Workers& workers) {
   report.vectors_bad += source.vectors_bad;
+  report.by_camera = source.by_camera.made + source.by_camera.background;
+  report.lens_added = source.by_camera.lens;
   for (std::size_t k = 0; k < resolved.size(); ++k) {
     report.pixels += source.presents[k].color.window().pixels();
     report.not_finite += source.presents[k].not_finite;
@@ -198,6 +204,13 @@ void count(FrameReport& report, const SourceFrame& source, const std::vector<Res
     report.companions_not_finite += source.presents[k].companions_not_finite;
     report.lights = report.lights + measure_light_sum(source.presents[k], resolved[k].accumulated.history, workers);
   }
+}
+
+/// Each kind of remark once: the numbers in it differ from frame to frame.
+void tell_of_cameras(const SourceFrame& source, std::set<std::string>& told, const ResolveEvents& events) {
+  const std::string& remark = source.by_camera.remark;
+  if (remark.empty() || !events.warning || !told.insert(remark.substr(0, remark.find('('))).second) return;
+  events.warning("frame " + std::to_string(source.headers.frame) + ": " + remark);
 }
 
 WriteOptions write_options(const Setup& s, const std::string& frames_used) {
@@ -252,15 +265,20 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
   Workers workers(job.threads);
   std::vector<SubjectState> states(s.info.first.subjects.size());
   FrameTrace trace;
+  std::set<std::string> told;
   const bool recursive = job.parameters.accumulator == Accumulator::recursive;
+  CameraTrack camera_track = s.info.cameras;
   const SourceOptions source_options{s.job,
                                      s.info,
                                      s.plan,
                                      s.jitter,
+                                     s.cameras,
+                                     camera_track,
                                      s.into_working_space ? &*s.into_working_space : nullptr,
                                      s.reach.back_to_restart};
   const auto read = [&](std::size_t index) {
-    SourceFrame source = read_source_frame(source_options, schedule[index].frame, workers);
+    SourceFrame source =
+        read_source_frame(source_options, schedule[index].frame, neighbors_of(schedule, index), workers);
     for (std::size_t k = 0; recursive && k < source.presents.size(); ++k) {
       if (schedule[index].restart) states[k].forward = {};
       follow_motion(source.presents[k], job.parameters.motion, states[k].forward, workers);
@@ -305,6 +323,7 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     SourceFrame& source = window[i];
     report.read_seconds = clock.lap();
     if (stop()) break;
+    tell_of_cameras(source, told, events);
 
     // Resolve, subject by subject.
     if (job.find_cuts) {

@@ -42,7 +42,11 @@ struct FoundCamera {
 /// problem told; those of a sidecar throw Failure(inconsistent) naming the frame.
 FoundCamera find_camera(const CameraSource& source, const Part& part, int frame);
 
-/// Cameras by frame, one for each subject.
-using CameraTrack = std::map<int, std::vector<std::optional<Camera>>>;
+/// The cameras of one frame, one for each subject.
+struct FrameCameras {
+  std::vector<std::optional<Camera>> cameras;
+  std::optional<glm::dvec2> jitter;
+};
+using CameraTrack = std::map<int, FrameCameras>;  ///< by frame
 
 }  // namespace varve

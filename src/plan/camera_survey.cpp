@@ -23,27 +23,28 @@ std::vector<FoundCamera> cameras_of(const FrameHeaders& headers, const CameraSou
   return cameras;
 }
 
-void CameraSurvey::add(int frame, const std::vector<FoundCamera>& cameras) {
-  std::vector<std::optional<Camera>> row;
-  bool any = false;
-  for (const FoundCamera& found : cameras) {
-    row.push_back(found.camera);
-    any = any || found.camera;
-  }
-  const FoundCamera& main = cameras.front();
+FrameCameras kept_cameras(const FrameHeaders& headers) {
+  FrameCameras kept;
+  for (const FoundCamera& found : headers.cameras) kept.cameras.push_back(found.camera);
+  if (headers.jitter) kept.jitter = glm::dvec2(headers.jitter->x, headers.jitter->y);
+  return kept;
+}
+
+void CameraSurvey::add(const FrameHeaders& headers) {
+  const FoundCamera& main = headers.cameras.front();
   frames += main.camera.has_value();
   unusable += !main.camera && !main.source.empty();
   if (source.empty()) source = main.source;
   if (!main.problem.empty() && ++problems == 1) {
     problem = main.problem;
-    first_problem = frame;
+    first_problem = headers.frame;
   }
-  if (any) track.emplace(frame, std::move(row));
+  track.emplace(headers.frame, kept_cameras(headers));
 }
 
 void CameraSurvey::finish(SequenceInfo& info) {
   info.frames_with_camera = frames;
-  info.cameras = std::move(track);
+  if (frames > 0) info.cameras = std::move(track);
   const std::string of = " of " + std::to_string(info.frames.size()) + " frames";
   info.camera = source.empty() ? "none found" : source + " in " + std::to_string(frames + unusable) + of;
   if (unusable > 0)
@@ -53,8 +54,8 @@ void CameraSurvey::finish(SequenceInfo& info) {
   else if (problems > 0)
     info.notes.push_back("cameras: " + problem);
   for (const auto& [frame, row] : info.cameras)
-    if (row.front()) {
-      if (row.front()->projection == Projection::orthographic) info.camera += ", orthographic";
+    if (row.cameras.front()) {
+      if (row.cameras.front()->projection == Projection::orthographic) info.camera += ", orthographic";
       break;
     }
 }

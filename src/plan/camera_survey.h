@@ -12,6 +12,9 @@ namespace varve {
 /// view. Throws what find_camera throws.
 std::vector<FoundCamera> cameras_of(const FrameHeaders& headers, const CameraSource& source);
 
+/// What of that is kept when the headers are gone.
+FrameCameras kept_cameras(const FrameHeaders& headers);
+
 /// Goes through the frames in ascending order.
 struct CameraSurvey {
   std::string source;   ///< of the first camera
@@ -20,7 +23,7 @@ struct CameraSurvey {
   int frames = 0;  ///< whose first subject has a camera
   CameraTrack track;
 
-  void add(int frame, const std::vector<FoundCamera>& cameras);
+  void add(const FrameHeaders& headers);
   /// Fills in camera, frames_with_camera and cameras, and adds notes.
   void finish(SequenceInfo& info);
 };

@@ -1,6 +1,7 @@
 #include "plan/check_possible.h"
 
 #include "base/error.h"
+#include "plan/camera_plan.h"
 #include "plan/expansive.h"
 #include "plan/value.h"
 
@@ -75,7 +76,7 @@ void check_tests(const SequenceInfo& info, const Parameters& parameters) {
     if (reject.normal_angle > 0 && !subject.normal)
       refuse(subject, "--normal-angle", "a normal",
              "name it with --map normal.x=CHANNEL and so on, or give --normal-angle 0");
-    if (reject.tests_vectors() && !subject.backward && !subject.forward)
+    if (reject.tests_vectors() && !subject.backward && !subject.forward && !is_moved_by_camera(info, subject))
       refuse(subject,
              reject.acceleration > 0 ? "--acceleration"
              : reject.speed > 0      ? "--speed-difference"

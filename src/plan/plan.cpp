@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "plan/camera_plan.h"
 #include "plan/check_possible.h"
 #include "plan/cost.h"
 #include "plan/describe_rectify.h"
@@ -30,7 +31,15 @@ class Planner {
 
   void motion() {
     const std::size_t moving = count_if(info_, has_motion), inverted = count_if(info_, only_forward);
-    plan_.use_motion = moving > 0;
+    const std::size_t by_camera = moved_by_camera(info_);
+    plan_.use_motion = moving + by_camera > 0;
+    if (moving == 0 && by_camera > 0) {
+      add("motion", true, "there are no vectors: what rests in the world is carried by its depth and the cameras" +
+                              share(by_camera));
+      if (parameters_.accumulator != Accumulator::gather)
+        add("invert forward", false, "vectors made from cameras lead both ways");
+      return;
+    }
     if (moving == 0) {
       add("motion", false, "no vectors, so every pixel follows itself");
       if (parameters_.accumulator != Accumulator::gather) add("invert forward", false, "no vectors");
@@ -311,6 +320,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   planner.add("read", true, "");
   planner.add("sanitize", true, "pixels that are not finite are kept from spreading");
   planner.motion();
+  plan.passes.push_back(camera_pass(info, parameters, plan));
   if (parameters.accumulator == Accumulator::gather) {
     planner.gather();
   } else {

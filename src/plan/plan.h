@@ -37,6 +37,7 @@ struct Plan {
   bool use_motion = false;
   bool use_forward = false;  ///< vectors to the next frame are read where the files have them
   bool use_jitter = false;
+  bool use_cameras = false;  ///< cameras make or complete vectors, or make depth planar
   bool use_id = false, use_normal = false, use_reactive = false, use_responsive = false;  ///< read and used
   std::size_t bytes = 0;                                                                  ///< peak memory expected
   double seconds_per_frame = 0;                                                           ///< expected wall time

@@ -89,7 +89,7 @@ struct Survey {
 
   void add(const FrameHeaders& frame) {
     if (frame.jitter) ++info.frames_with_jitter;
-    cameras.add(frame.frame, frame.cameras);
+    cameras.add(frame);
     compare_windows(frame, info);
     const std::set<std::string> names = channel_names(frame);
     if (names == first_names || ++differing > kMaxDifferences) return;
@@ -199,7 +199,7 @@ SequenceInfo probe_sequence(const InputSequence& input, const std::vector<int>& 
   info.frames.erase(std::unique(info.frames.begin(), info.frames.end()), info.frames.end());
   find_gaps(info);
   info.first = read_frame_headers(input, info.frames.front(), roles, jitter, cameras);
-  Survey survey{info, channel_names(info.first)};
+  Survey survey{info, channel_names(info.first), {}};
   survey.add(info.first);
   for (std::size_t i = 1; i < info.frames.size(); ++i)
     survey.add(read_frame_headers(input, info.frames[i], roles, jitter, cameras));

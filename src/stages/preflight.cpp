@@ -11,8 +11,10 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/version.h"
 #include "exr/write_frame.h"
+#include "plan/camera_plan.h"
 #include "plan/preset.h"
 
 namespace varve {
@@ -93,6 +95,19 @@ std::string describe_jitter(const std::string& jitter) {
   return rows.empty() ? jitter : "table:" + hash_of(rows);
 }
 
+/// Likewise.
+std::string describe_cameras(const std::string& camera) {
+  std::string rows;
+  for (const auto& [frame, row] : parse_camera_source(camera).table) {
+    rows += std::to_string(frame) + ":";
+    const auto add = [&](double number) { rows += json_number(number) + ","; };
+    for (const double number : row.view) add(number);
+    for (std::size_t i = 0; row.projection && i < 16; ++i) add((*row.projection)[i]);
+    add(row.focal), add(row.aperture);
+  }
+  return rows.empty() ? camera : "table:" + hash_of(rows);
+}
+
 std::filesystem::path canonical(const std::string& path) { return std::filesystem::weakly_canonical(path); }
 
 }  // namespace
@@ -138,6 +153,13 @@ std::pair<std::size_t, std::size_t> span_around(const std::vector<ScheduledFrame
   return {first, last};
 }
 
+NeighborFrames neighbors_of(const std::vector<ScheduledFrame>& schedule, std::size_t index) {
+  NeighborFrames neighbors;
+  if (index > 0 && !schedule[index].restart) neighbors.before = schedule[index - 1].frame;
+  if (index + 1 < schedule.size() && !schedule[index + 1].restart) neighbors.after = schedule[index + 1].frame;
+  return neighbors;
+}
+
 std::string frames_used(const std::vector<ScheduledFrame>& schedule, std::size_t index, const FrameReach& reach) {
   const auto [first, last] = span_around(schedule, index, reach);
   std::vector<int> frames;
@@ -154,6 +176,7 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   std::sort(cuts.begin(), cuts.end());
   if (!cuts.empty()) text += " cuts=" + format_frame_list(cuts);
   if (job.find_cuts) text += " find-cuts=on";
+  text += " camera=" + describe_cameras(job.camera);
   text += " jitter=" + describe_jitter(job.jitter) + " convention=" + job.roles.convention;
   for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
   for (const std::string& channels : job.roles.channels) text += " channels=" + channels;
@@ -208,13 +231,13 @@ void check_roles(const ResolveJob& job, const SequenceInfo& info) {
                                          " frames; put the frame number in, as in motion.####.exr");
   if (info.frames.size() < 2 || job.roles.convention == "none") return;
   for (const Subject& subject : info.first.subjects)
-    if (!subject.backward && !subject.forward)
+    if (!subject.backward && !subject.forward && !is_moved_by_camera(info, subject))
       throw Failure(
           ExitCode::inconsistent,
           "'" + info.first.files.front().path + "' (frame " + std::to_string(info.first.frame) +
               ") has no motion vectors for " + (subject.layer.empty() ? "its color" : "layer '" + subject.layer + "'") +
-              "; render them, name them with --map motion.x=CHANNEL or --motion-file, or say --convention none to "
-              "resolve as if nothing moved");
+              "; render them, name them with --map motion.x=CHANNEL or --motion-file, give depth and --camera FILE, or "
+              "say --convention none to resolve as if nothing moved");
 }
 
 void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& schedule) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "plan/resolve_job.h"
+#include "stages/cameras_around.h"
 
 namespace varve {
 
@@ -33,6 +34,9 @@ struct ScheduledFrame {
 /// Frames in order: requested ones are written, existing ones between them and within reach around them are only made
 /// use of. With --resume, frames that no unfinished frame depends on are left out.
 std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash);
+
+/// The frames that the vectors of schedule[index] lead to.
+NeighborFrames neighbors_of(const std::vector<ScheduledFrame>& schedule, std::size_t index);
 
 /// First and last place in the schedule of the frames that schedule[index] is made from.
 std::pair<std::size_t, std::size_t> span_around(const std::vector<ScheduledFrame>& schedule, std::size_t index,

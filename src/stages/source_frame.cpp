@@ -1,17 +1,37 @@
 #include "stages/source_frame.h"
 
+#include <utility>
+
 #include "stages/check_same_subjects.h"
 
 namespace varve {
+namespace {
 
-SourceFrame read_source_frame(const SourceOptions& options, int frame, Workers& workers) {
+/// What cameras have to say: planar depth, and vectors.
+void use_cameras(SourceFrame& source, const SourceOptions& options, const NeighborFrames& neighbors, Workers& workers) {
+  const MotionParameters& motion = options.job.parameters.motion;
+  for (std::size_t k = 0; k < source.presents.size(); ++k) {
+    Present& present = source.presents[k];
+    const CamerasAround& cameras = source.cameras[k];
+    if (motion.depth_kind == DepthKind::ray && cameras.here && !present.depth.empty())
+      ray_to_planar_depth(present.depth, present.jitter.value_or(glm::dvec2(0)), *cameras.here, workers);
+    move_by_camera(present, source.headers.subjects[k], cameras, neighbors, motion, options.plan.use_forward,
+                   source.by_camera, workers);
+    if (!options.plan.use_depth) present.depth = {};  // read for the cameras only
+  }
+}
+
+}  // namespace
+
+SourceFrame read_source_frame(const SourceOptions& options, int frame, const NeighborFrames& neighbors,
+                              Workers& workers) {
   const Plan& plan = options.plan;
   SourceFrame source;
-  source.headers = read_frame_headers(options.job.input, frame, options.job.roles, options.jitter);
+  source.headers = read_frame_headers(options.job.input, frame, options.job.roles, options.jitter, options.cameras);
   check_same_subjects(options.info.first, source.headers, plan);
   source.pixels = in_frame(frame, [&] {
     return read_files(source.headers,
-                      {.depth = plan.use_depth,
+                      {.depth = plan.use_depth || plan.use_cameras,
                        .motion = plan.use_motion,
                        .whole_parts = options.job.request.keep_channels && options.keep_pixels,
                        .forward = plan.use_forward,
@@ -22,7 +42,7 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, Workers& 
                       workers);
   });
   const ReadOptions read{.motion = options.job.parameters.motion,
-                         .use_depth = plan.use_depth,
+                         .use_depth = plan.use_depth || plan.use_cameras,
                          .use_motion = plan.use_motion,
                          .use_forward = plan.use_forward,
                          .use_id = plan.use_id,
@@ -34,6 +54,11 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, Workers& 
     source.presents.push_back(read_present(subject, source.pixels, part.data_window, part.display_window, read,
                                            options.into_working_space, source.vectors_bad, workers));
     if (const auto& jitter = source.headers.jitter) source.presents.back().jitter = glm::dvec2(jitter->x, jitter->y);
+  }
+  if (plan.use_cameras) {
+    source.cameras =
+        cameras_around(source.headers, neighbors, options.job, options.jitter, options.cameras, options.camera_track);
+    in_frame(frame, [&] { use_cameras(source, options, neighbors, workers); });
   }
   if (!options.keep_pixels) source.pixels.clear();
   return source;

@@ -6,6 +6,8 @@
 
 #include "base/error.h"
 #include "plan/resolve_job.h"
+#include "stages/cameras_around.h"
+#include "stages/move_by_camera.h"
 #include "stages/read_present.h"
 
 namespace varve {
@@ -13,9 +15,11 @@ namespace varve {
 /// One frame as the accumulators see it.
 struct SourceFrame {
   FrameHeaders headers;
-  FileSet pixels;                 ///< as stored; empty where the frame is read again when it is written
-  std::vector<Present> presents;  ///< one for each of headers.subjects
-  std::size_t vectors_bad = 0;    ///< vectors that cannot be used
+  FileSet pixels;                      ///< as stored; empty where the frame is read again when it is written
+  std::vector<Present> presents;       ///< one for each of headers.subjects
+  std::vector<CamerasAround> cameras;  ///< one for each present
+  CameraVectors by_camera;
+  std::size_t vectors_bad = 0;  ///< vectors that cannot be used
 };
 
 /// Names the frame in what a stage has to say: file names alone need not tell it.
@@ -34,12 +38,15 @@ struct SourceOptions {
   const SequenceInfo& info;
   const Plan& plan;
   const JitterSource& jitter;
+  const CameraSource& cameras;
+  CameraTrack& camera_track;  ///< grows by frames that were not probed
   const ColorConversion* into_working_space = nullptr;
   bool keep_pixels = false;  ///< SourceFrame::pixels stay, with all that is only passed through
 };
 
-/// Reads one frame: headers, the channels that the plan names, a present for each subject, vectors as stored. Throws
-/// Failure naming the frame.
-SourceFrame read_source_frame(const SourceOptions& options, int frame, Workers& workers);
+/// Reads one frame: headers, the channels that the plan names, a present for each subject, vectors as stored but for
+/// what cameras add. `neighbors` are the frames that its vectors lead to. Throws Failure naming the frame.
+SourceFrame read_source_frame(const SourceOptions& options, int frame, const NeighborFrames& neighbors,
+                              Workers& workers);
 
 }  // namespace varve
