@@ -15,6 +15,12 @@ constexpr Word<std::optional<synth::Filter>> kFilters[] = {
     {"gaussian", synth::Filter::gaussian, "sigma 0.5 pixels, cut at 1.5"},
     {"blackman-harris", synth::Filter::blackman_harris, "four terms over 3 pixels, the default of Cycles"},
 };
+constexpr Word<SynthCameras> kCameras[] = {
+    {"attributes", SynthCameras::attributes, "the standard attributes worldToCamera and worldToNDC"},
+    {"note", SynthCameras::note, "view and proj in JSON in the attribute Note"},
+    {"both", SynthCameras::both, "both"},
+    {"none", SynthCameras::none, "nowhere"},
+};
 constexpr auto kBasic = Tier::basic, kAdvanced = Tier::advanced;
 
 }  // namespace
@@ -59,6 +65,9 @@ void add_synth_options(std::vector<Option>& rows) {
        number([](auto& s) -> auto& { return s.synth.noise; }, {0, 100})});
   add(samples, {"seed", 0, "NUMBER", 0, kAdvanced, "", "Of noise, chance, and the places of the samples of truth.",
                 number([](auto& s) -> auto& { return s.synth.seed; }, {0, 2147483647})});
+  add(samples, {"cameras", 0, "WHERE", 0, kAdvanced, "", "Where the camera of each frame is written.",
+                word(
+                    [](auto& s) -> auto& { return s.synth.cameras; }, kCameras)});
   const char* const truth = "Truth";
   add(truth, {"truth", 0, "FILTER", 0, kBasic, "", "Write the truth, seen through this pixel filter, to DIR/truth.",
               word(

@@ -158,11 +158,25 @@ std::vector<double> numbers_of(const synth::Matrix& matrix) {
   return {std::begin(matrix.values), std::end(matrix.values)};
 }
 
+std::string json_matrix(const synth::Matrix& matrix) {
+  std::string text;
+  for (const double value : matrix.values) text += (text.empty() ? "[" : ",") + json_number(value);
+  return text + "]";
+}
+
 std::vector<Attribute> attributes_of(const Synth& synth, const Moment& moment) {
-  return {string_attribute("varve:scene", synth.job.scene),
-          number_attribute("worldToCamera", "m44f", numbers_of(world_to_camera(moment.camera))),
-          number_attribute("worldToNDC", "m44f",
-                           numbers_of(world_to_ndc(moment.camera, synth.window.width(), synth.window.height())))};
+  const synth::Camera& camera = moment.camera;
+  const int width = synth.window.width(), height = synth.window.height();
+  const SynthCameras told = synth.job.cameras;
+  std::vector<Attribute> attributes = {string_attribute("varve:scene", synth.job.scene)};
+  if (told == SynthCameras::attributes || told == SynthCameras::both) {
+    attributes.push_back(number_attribute("worldToCamera", "m44f", numbers_of(world_to_camera(camera))));
+    attributes.push_back(number_attribute("worldToNDC", "m44f", numbers_of(world_to_ndc(camera, width, height))));
+  }
+  if (told == SynthCameras::note || told == SynthCameras::both)
+    attributes.push_back(string_attribute("Note", "{\"view\":" + json_matrix(opengl_view(camera)) + ",\"proj\":" +
+                                                      json_matrix(opengl_projection(camera, width, height)) + "}"));
+  return attributes;
 }
 
 NewPart new_part(const Synth& synth, const Moment& moment, const ChannelStore& store) {

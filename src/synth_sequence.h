@@ -13,6 +13,10 @@
 
 namespace varve {
 
+/// Where the camera is written: standard attributes, JSON in the attribute Note as Cycles' users have it, both,
+/// nowhere.
+enum class SynthCameras { attributes, note, both, none };
+
 struct SynthJob {
   std::string scene;                    ///< name of the scene table
   std::string folder;                   ///< made when it is not there
@@ -24,6 +28,7 @@ struct SynthJob {
   double noise = 0;                     ///< deviation of a factor with mean 1 on every sample
   int seed = 1;                         ///< of noise, chance, and the places of truth
   PixelType type = PixelType::float16;  ///< of color and alpha
+  SynthCameras cameras = SynthCameras::attributes;
   std::optional<synth::Filter> truth;
   int truth_samples = 256;      ///< rounded up to a square
   std::vector<int> yardsticks;  ///< n of n x n stratified samples, box filter

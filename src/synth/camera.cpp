@@ -51,8 +51,8 @@ glm::dmat3 turned_z(double radians) {
 }
 
 glm::dmat3 lens_of(const Camera& camera, int width, int height) {
-  const double f = camera.focal * width / 320;
-  return {{f, 0, 0}, {0, f, 0}, {0.5 * width, 0.5 * height, 1}};
+  const double scale = width / 320.0, f = camera.focal * scale;
+  return {{f, 0, 0}, {0, f, 0}, {0.5 * width + camera.shift.x * scale, 0.5 * height + camera.shift.y * scale, 1}};
 }
 
 Matrix world_to_camera(const Camera& camera) {
@@ -66,9 +66,25 @@ Matrix world_to_ndc(const Camera& camera, int width, int height) {
   glm::dmat4 m(0);
   m[0][0] = lens[0][0] / width;
   m[1][1] = lens[1][1] / height;
-  m[2] = {0.5, 0.5, 1, 1};
+  m[2] = {lens[2][0] / width, lens[2][1] / height, 1, 1};
   m[3][2] = -kNear;
   return row_major(m * to_camera(camera));
+}
+
+Matrix opengl_view(const Camera& camera) {
+  glm::dmat4 flip(1);
+  flip[1][1] = flip[2][2] = -1;
+  return row_major(glm::transpose(flip * to_camera(camera)));
+}
+
+Matrix opengl_projection(const Camera& camera, int width, int height) {
+  const glm::dmat3 lens = lens_of(camera, width, height);
+  glm::dmat4 m(0);
+  m[0][0] = 2 * lens[0][0] / width;
+  m[1][1] = 2 * lens[1][1] / height;
+  m[2] = {1 - 2 * lens[2][0] / width, 2 * lens[2][1] / height - 1, -1, -1};
+  m[3][2] = -2 * kNear;
+  return row_major(glm::transpose(m));
 }
 
 }  // namespace varve::synth

@@ -31,7 +31,8 @@ glm::dmat3 turned_z(double radians);
 /// A pinhole camera; it looks along its local z.
 struct Camera {
   Pose pose;
-  double focal = 320;  ///< pixels, for a picture 320 pixels wide
+  double focal = 320;   ///< pixels, for a picture 320 pixels wide
+  glm::dvec2 shift{0};  ///< of the lens: what lies ahead is seen so many pixels from the middle, likewise
 };
 using CameraMotion = std::function<Camera(double time)>;
 
@@ -46,5 +47,9 @@ struct Matrix {
 Matrix world_to_camera(const Camera& camera);
 /// Display window as (0, 0) top left to (1, 1) bottom right; z runs from 0 near to 1 far away.
 Matrix world_to_ndc(const Camera& camera, int width, int height);
+
+/// OpenGL's: row-major 4x4 for column vectors; the camera looks along -z, y up; clip space from -1 to 1.
+Matrix opengl_view(const Camera& camera);
+Matrix opengl_projection(const Camera& camera, int width, int height);
 
 }  // namespace varve::synth

@@ -28,7 +28,8 @@ struct Way {
 };
 
 // Where a point with these local coordinates lies in the picture of some frame, as the vectors have it.
-Way way_to(const Surface& surface, const View& view, double now, double then) {
+Way way_to(const Surface& surface, View view, const glm::dmat3& lens_now, double now, double then) {
+  if (surface.vectors == Vectors::lensless) view.lens = lens_now;
   Pose place = surface.motion(surface.vectors == Vectors::carrier ? now : then);
   if (surface.vectors == Vectors::carrier && surface.carrier && now != then)
     place = surface.carrier(then) * inverse(surface.carrier(now)) * place;
@@ -68,8 +69,8 @@ PlacedSurface place(const Surface& surface, const Moment& moment, const View& no
     placed.to_local = glm::inverse(glm::dmat3(r[0], r[1], local_to_camera.position)) * moment.to_ray;
   placed.bounds = bounds_of(surface, local_to_camera, now.lens);
   const double time = moment.time;
-  const Way here = way_to(surface, now, time, time), from = way_to(surface, before, time, time - 1),
-            to = way_to(surface, after, time, time + 1);
+  const Way here = way_to(surface, now, now.lens, time, time), from = way_to(surface, before, now.lens, time, time - 1),
+            to = way_to(surface, after, now.lens, time, time + 1);
   const bool sways = surface.sway.amplitude != 0 && surface.vectors != Vectors::carrier;
   placed.before = from.matrix;
   placed.before_offset = from.offset;

@@ -30,6 +30,8 @@ Scene quality_all();
 Scene still_scene();
 Scene pan_scene();
 Scene zoom_scene();
+Scene zoom_lacking_scene();
+Scene shift_lacking_scene();
 Scene rotation_scene();
 Scene fence_scene();
 Scene zone_plate_scene();

@@ -45,6 +45,20 @@ Scene zoom_scene() {
   return detail([](double time) { return Camera{{}, 320 * std::exp2((time - 24) / 40)}; });
 }
 
+Scene zoom_lacking_scene() {
+  Scene scene = zoom_scene();
+  for (Surface& surface : scene.shots[0].surfaces) surface.vectors = Vectors::lensless;
+  return finished(std::move(scene));
+}
+
+Scene shift_lacking_scene() {
+  Scene scene = detail([](double time) {
+    return Camera{{{1.7 * (time - 24), 0, 0}}, 320, {2.1 * (time - 24), -0.6 * (time - 24)}};
+  });
+  for (Surface& surface : scene.shots[0].surfaces) surface.vectors = Vectors::lensless;
+  return finished(std::move(scene));
+}
+
 Scene rotation_scene() {
   return detail([](double time) { return Camera{{{0, 0, 0}, turned_z(1.1 * kDegree * (time - 24))}, 320}; });
 }

@@ -35,6 +35,7 @@ enum class Vectors {
   carrier,  ///< Surface::carrier, the world where that is empty; sway is not seen either
   none,     ///< zero, whatever moves
   below,    ///< vectors and depth are those of the surface behind this one
+  lensless  ///< right but for zoom and lens shift, which Cycles leaves out
 };
 
 /// Front to back, for layered output.
