@@ -108,8 +108,8 @@ std::string frame_line(const FrameReport& report, int done, int total) {
       line += count_text(report.companions_not_finite, "values of --channels repaired that were not finite");
     if (add_up(report.lights)) line += residual_text(report.lights);
     if (report.vectors_bad > 0) line += count_text(report.vectors_bad, "unusable vectors");
-    if (report.by_camera > 0) line += share_text(report.by_camera, report.pixels, "of the vectors by the camera");
-    if (report.lens_added > 0) line += share_text(report.lens_added, report.pixels, "of the vectors with zoom added");
+    if (report.by_camera > 0) line += share_text(report.by_camera, report.vectors, "of the vectors by the camera");
+    if (report.lens_added > 0) line += share_text(report.lens_added, report.vectors, "of the vectors with zoom added");
     if (report.half_overflows > 0) line += count_text(report.half_overflows, "values beyond half held at 65504");
   }
   return line + ", PROGRESS: " + std::to_string(percent(done, total)) + "%";

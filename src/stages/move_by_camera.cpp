@@ -79,6 +79,7 @@ void move_by_camera(Present& present, const Subject& subject, const CamerasAroun
                     const NeighborFrames& neighbors, const MotionParameters& parameters, bool want_forward,
                     CameraVectors& counts, Workers& workers) {
   if (present.depth.empty()) return;
+  counts.pixels += present.depth.window().pixels();
   const glm::dvec2 jitter = present.jitter.value_or(glm::dvec2(0));
   const Way before{cameras.before, neighbors.before, present.motion};
   const Way after{cameras.after, neighbors.after, present.forward};

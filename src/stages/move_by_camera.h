@@ -12,6 +12,7 @@ namespace varve {
 
 /// Pixels of a frame whose vectors to the frame before (or to the next, where there are no others) come from a camera.
 struct CameraVectors {
+  std::size_t pixels = 0;      ///< that have vectors now
   std::size_t made = 0;        ///< there were no vectors
   std::size_t background = 0;  ///< background whose vectors were zero
   std::size_t lens = 0;        ///< zoom or lens shift was added

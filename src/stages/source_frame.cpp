@@ -3,15 +3,17 @@
 #include <utility>
 
 #include "stages/check_same_subjects.h"
+#include "stages/combine_presents.h"
 
 namespace varve {
 namespace {
 
 /// What cameras have to say: planar depth, and vectors.
-void use_cameras(SourceFrame& source, const SourceOptions& options, const NeighborFrames& neighbors, Workers& workers) {
+void use_cameras(SourceFrame& source, std::vector<Present>& presents, const SourceOptions& options,
+                 const NeighborFrames& neighbors, Workers& workers) {
   const MotionParameters& motion = options.job.parameters.motion;
-  for (std::size_t k = 0; k < source.presents.size(); ++k) {
-    Present& present = source.presents[k];
+  for (std::size_t k = 0; k < presents.size(); ++k) {
+    Present& present = presents[k];
     const CamerasAround& cameras = source.cameras[k];
     if (motion.depth_kind == DepthKind::ray && cameras.here && !present.depth.empty())
       ray_to_planar_depth(present.depth, present.jitter.value_or(glm::dvec2(0)), *cameras.here, workers);
@@ -49,17 +51,20 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, const Nei
                          .use_normal = plan.use_normal,
                          .use_reactive = plan.use_reactive,
                          .use_responsive = plan.use_responsive};
+  std::vector<Present> presents;
   for (const Subject& subject : source.headers.subjects) {
     const Part& part = source.headers.files.front().parts[std::size_t(part_of(subject))];
-    source.presents.push_back(read_present(subject, source.pixels, part.data_window, part.display_window, read,
-                                           options.into_working_space, source.vectors_bad, workers));
-    if (const auto& jitter = source.headers.jitter) source.presents.back().jitter = glm::dvec2(jitter->x, jitter->y);
+    presents.push_back(read_present(subject, source.pixels, part.data_window, part.display_window, read,
+                                    options.into_working_space, source.vectors_bad, workers));
+    if (const auto& jitter = source.headers.jitter) presents.back().jitter = glm::dvec2(jitter->x, jitter->y);
   }
   if (plan.use_cameras) {
     source.cameras =
         cameras_around(source.headers, neighbors, options.job, options.jitter, options.cameras, options.camera_track);
-    in_frame(frame, [&] { use_cameras(source, options, neighbors, workers); });
+    in_frame(frame, [&] { use_cameras(source, presents, options, neighbors, workers); });
   }
+  source.presents =
+      combine_presents(source.headers, std::move(presents), {options.job.roles, options.show_combined}, workers);
   if (!options.keep_pixels) source.pixels.clear();
   return source;
 }

@@ -16,8 +16,8 @@ namespace varve {
 struct SourceFrame {
   FrameHeaders headers;
   FileSet pixels;                      ///< as stored; empty where the frame is read again when it is written
-  std::vector<Present> presents;       ///< one for each of headers.subjects
-  std::vector<CamerasAround> cameras;  ///< one for each present
+  std::vector<Present> presents;       ///< one for each of accumulated_subjects(): a subject, or several combined
+  std::vector<CamerasAround> cameras;  ///< one for each of headers.subjects; empty without
   CameraVectors by_camera;
   std::size_t vectors_bad = 0;  ///< vectors that cannot be used
 };
@@ -41,11 +41,13 @@ struct SourceOptions {
   const CameraSource& cameras;
   CameraTrack& camera_track;  ///< grows by frames that were not probed
   const ColorConversion* into_working_space = nullptr;
-  bool keep_pixels = false;  ///< SourceFrame::pixels stay, with all that is only passed through
+  bool keep_pixels = false;    ///< SourceFrame::pixels stay, with all that is only passed through
+  bool show_combined = false;  ///< Present::combined is asked for
 };
 
-/// Reads one frame: headers, the channels that the plan names, a present for each subject, vectors as stored but for
-/// what cameras add. `neighbors` are the frames that its vectors lead to. Throws Failure naming the frame.
+/// Reads one frame: headers, the channels that the plan names, a present for each thing that is accumulated, vectors as
+/// stored but for what cameras add. `neighbors` are the frames that its vectors lead to. Throws Failure naming the
+/// frame.
 SourceFrame read_source_frame(const SourceOptions& options, int frame, const NeighborFrames& neighbors,
                               Workers& workers);
 
