@@ -13,25 +13,30 @@ constexpr Preset kPresets[] = {
      "Three frames on each side, four cells in a pixel, light as it is: a first look. On the scenes quality-* it gains "
      "13.7 dB over the input at rest, 10.5 with a moving camera, 12.8 with moving objects, and takes 2 microseconds a "
      "pixel and frame on one core.",
-     "accumulator=gather reach=3 cells=2 sigma=0.2 gain=off change-limit=0 firefly-limit=0 sample-filter=none "
+     "accumulator=gather camera-motion=all reach=3 cells=2 sigma=0.2 gain=off change-limit=0 firefly-limit=0 "
+     "sample-filter=none "
      "return-tolerance=0"},
     {"standard", "Varve",
      "Eight frames on each side, sixteen cells, light that changes is followed. Gains 19.4, 14.4 and 16.8 dB; 7 "
      "microseconds.",
-     "accumulator=gather reach=8 cells=4 sigma=0.12 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
+     "accumulator=gather camera-motion=all reach=8 cells=4 sigma=0.12 gain=on gain-window=21 change-limit=2.5 "
+     "firefly-limit=0 "
      "sample-filter=none return-tolerance=0"},
     {"high", "Varve", "Sixteen frames on each side: for final frames. Gains 20.2, 15.9 and 17.3 dB; 12 microseconds.",
-     "accumulator=gather reach=16 cells=4 sigma=0.1 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
+     "accumulator=gather camera-motion=all reach=16 cells=4 sigma=0.1 gain=on gain-window=21 change-limit=2.5 "
+     "firefly-limit=0 "
      "sample-filter=none return-tolerance=0.5"},
     {"reference", "Varve",
      "Twenty-four frames on each side, thirty-six cells: as good as it gets. Gains 20.4, 16.4 and 17.4 dB; 16 "
      "microseconds.",
-     "accumulator=gather reach=24 cells=6 sigma=0.07 gain=on gain-window=21 change-limit=2.5 firefly-limit=0 "
+     "accumulator=gather camera-motion=all reach=24 cells=6 sigma=0.07 gain=on gain-window=21 change-limit=2.5 "
+     "firefly-limit=0 "
      "sample-filter=none return-tolerance=0.5"},
     {"two-sided", "Fraser and Potter 1969; Rauch, Tung and Striebel 1965",
      "Past and future histories merged: for frames without ids, depth or jitter that the gather could use, or with "
      "vectors that are wrong. Gains 8.4, 5.8 and 7.7 dB; 0.6 microseconds.",
-     "accumulator=two-sided dilation=longest alpha=0.1 alpha-rule=fixed history-filter=catmull-rom dering=on "
+     "accumulator=two-sided camera-motion=all dilation=longest alpha=0.1 alpha-rule=fixed history-filter=catmull-rom "
+     "dering=on "
      "disocclusion=window sample-filter=none look-ahead=8 return-tolerance=0.5 "
      "box=variance gamma=1 window=3 moments=direct rule=clip anchor=present space=rgb hull-passes=64 "
      "clip-discount=on"},
