@@ -6,37 +6,42 @@
 #include "base/error.h"
 #include "commands.h"
 #include "plan/describe.h"
+#include "stages/order_layers.h"
 #include "stages/probe_motion.h"
 
 namespace varve::cli {
 
 namespace {
 
-std::vector<int> frames_of(const ResolveJob& job) {
-  return job.frames.empty() ? job.input.color.frames_on_disk() : job.frames;
+// Vectors that nobody told the convention of stop a probe by headers; where the pixels are asked, they need not.
+ResolveJob readable(const ResolveJob& job, bool asks_pixels) {
+  ResolveJob read = job;
+  if (!asks_pixels) return read;
+  const std::vector<int> frames = job.frames.empty() ? job.input.color.frames_on_disk() : job.frames;
+  if (!frames.empty() && !told_by_names(job, frames.front(), parse_jitter_source(job.jitter)))
+    read.roles = without_vectors(job.roles);
+  return read;
 }
 
 }  // namespace
 
 int run_probe(Settings& settings) {
   finish_job(settings);
-  const ResolveJob& job = settings.job;
+  const OrderedLayers ordered = order_layers(readable(settings.job, settings.motion));
+  const ResolveJob& job = ordered.job;
   const JitterSource jitter = parse_jitter_source(job.jitter);
-  // Vectors that nobody told the convention of stop a probe by headers; the pixels are asked what they mean.
-  const std::vector<int> on_disk = settings.motion ? frames_of(job) : std::vector<int>();
-  const bool told = on_disk.empty() || told_by_names(job, on_disk.front(), jitter);
-  const RoleRequest roles = told ? job.roles : without_vectors(job.roles);
-  const SequenceInfo info = probe_sequence(job.input, job.frames, roles, jitter);
-  const Plan plan = make_plan(info, job.parameters, job.request, job.threads);
+  const SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
+  Plan plan = make_plan(info, job.parameters, job.request, job.threads);
+  if (!ordered.note.empty()) plan.notes.push_back(ordered.note);
   std::vector<ChannelStatistics> statistics;
   if (settings.pixels > 0) {
     Workers workers(job.threads);
-    statistics = measure_pixels(info, job.input, roles, jitter, settings.pixels, workers);
+    statistics = measure_pixels(info, job.input, job.roles, jitter, settings.pixels, workers);
   }
   std::optional<MotionReport> motion;
   if (settings.motion) {
     Workers workers(job.threads);
-    motion = probe_motion(job, info.frames, {}, workers);
+    motion = probe_motion(settings.job, info.frames, {}, workers);
   }
   const std::string text = settings.json ? describe_json(info, plan, statistics, motion ? motion_json(*motion) : "")
                                          : describe_text(info, plan, statistics) + (motion ? motion_text(*motion) : "");
