@@ -9,6 +9,7 @@
 
 #include "exr/read_frame.h"
 #include "motion/motion.h"
+#include "paths.h"
 #include "plan/probe.h"
 #include "stages/cameras_around.h"
 #include "stages/read_present.h"
@@ -39,7 +40,8 @@ Residual residual_of(const std::string& pattern, int frame, const std::string& l
   std::size_t bad = 0;
   const Present present =
       read_present(subject, pixels, part.data_window, part.display_window,
-                   {.use_depth = true, .use_motion = true, .use_forward = true, .use_id = true}, nullptr, bad, workers);
+                   {.motion = {}, .use_depth = true, .use_motion = true, .use_forward = true, .use_id = true}, nullptr,
+                   bad, workers);
   const glm::dvec2 jitter(headers.jitter->x, headers.jitter->y);
   Residual r;
   for (const bool past : {true, false}) {
