@@ -188,17 +188,14 @@ std::vector<ChosenColor> choose_colors(const ChannelIndex& index, const std::vec
   return chosen;
 }
 
-// Numbered layers, each of them as much the main color as the color they are samples of.
+// Numbered layers.
 std::vector<ChosenColor> choose_sample_colors(const ChannelIndex& index, const std::vector<ColorLayer>& layers,
                                               const RoleRequest& request) {
   std::vector<NamedLayer> names;
   for (const ColorLayer& layer : layers) names.push_back({layer.group->view, layer.layer});
   const ChosenSamples samples = choose_samples(names, request.layers, index.files.front().path);
   std::vector<ChosenColor> chosen;
-  for (const std::size_t place : samples.layers) {
-    chosen.push_back({layers[place], chosen.empty() ? samples.note : ""});
-    chosen.back().color.rank = 1;
-  }
+  for (const std::size_t place : samples.layers) chosen.push_back({layers[place], chosen.empty() ? samples.note : ""});
   return chosen;
 }
 

@@ -28,8 +28,6 @@ std::vector<PlannedPass> samples_passes(const SequenceInfo& info, const Paramete
   const ColorOutput& output = info.first.outputs.front();
   const bool known = info.first.jitter.has_value();
   const std::string count = std::to_string(output.inputs.size());
-  for (const ColorOutput& o : info.first.outputs)
-    notes.insert(notes.end(), o.subject.notes.begin(), o.subject.notes.end());
   if (info.first.grid > 1)
     notes.push_back(
         "samples: each lies in the middle of its pixel of the files, moved by the jitter of these where that "

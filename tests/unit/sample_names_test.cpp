@@ -68,6 +68,7 @@ const std::vector<std::string> kChannels = {"A", "B", "G", "R", "Z", "velocity.x
 RoleRequest resolve_request() {
   RoleRequest request;
   request.samples.mode = SampleMode::resolve;
+  request.convention = "varve";
   return request;
 }
 
