@@ -66,7 +66,8 @@ Value<Settings> samples_value() {
   value.choices.push_back({"each",
                            "each is resolved over time, then they are to the pixel; with --accumulator gather "
                            "all meet in it"});
-  value.choices.push_back({"grid:N", "the samples are N x N pixels of a picture that is N times as wide and as high"});
+  value.choices.push_back(
+      {"grid:2", "the samples are 2 x 2 pixels of a picture that is twice as wide and as high; up to grid:16"});
   return value;
 }
 
