@@ -45,7 +45,7 @@ FoundCamera find_camera(const CameraSource& source, const Part& part, int frame)
 /// The cameras of one frame, one for each subject.
 struct FrameCameras {
   std::vector<std::optional<Camera>> cameras;
-  std::optional<glm::dvec2> jitter;
+  std::vector<std::optional<glm::dvec2>> jitter;
 };
 using CameraTrack = std::map<int, FrameCameras>;  ///< by frame
 

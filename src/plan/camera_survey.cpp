@@ -25,8 +25,11 @@ std::vector<FoundCamera> cameras_of(const FrameHeaders& headers, const CameraSou
 
 FrameCameras kept_cameras(const FrameHeaders& headers) {
   FrameCameras kept;
-  for (const FoundCamera& found : headers.cameras) kept.cameras.push_back(found.camera);
-  if (headers.jitter) kept.jitter = glm::dvec2(headers.jitter->x, headers.jitter->y);
+  for (std::size_t k = 0; k < headers.cameras.size(); ++k) {
+    kept.cameras.push_back(headers.cameras[k].camera);
+    const std::optional<Jitter> jitter = jitter_of_subject(headers, k);
+    kept.jitter.push_back(jitter ? std::optional(glm::dvec2(jitter->x, jitter->y)) : std::nullopt);
+  }
   return kept;
 }
 

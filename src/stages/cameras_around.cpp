@@ -10,7 +10,7 @@ std::optional<CameraChange> change_to(const FrameCameras& here, const FrameCamer
   if (!there || subject >= there->cameras.size() || !here.cameras[subject] || !there->cameras[subject])
     return std::nullopt;
   Camera from = *here.cameras[subject], to = *there->cameras[subject];
-  take_out_jitter(from, to, here.jitter, there->jitter);
+  take_out_jitter(from, to, here.jitter[subject], there->jitter[subject]);
   return change_between(from, to);
 }
 
