@@ -5,13 +5,13 @@
 #include "base/error.h"
 #include "commands.h"
 #include "plan/describe.h"
-#include "stages/order_layers.h"
+#include "stages/settle_layers.h"
 
 namespace varve::cli {
 
 int run_probe(Settings& settings) {
   finish_job(settings);
-  const OrderedLayers ordered = order_layers(settings.job);
+  const SettledLayers ordered = settle_layers(settings.job);
   const ResolveJob& job = ordered.job;
   const JitterSource jitter = parse_jitter_source(job.jitter);
   const SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);

@@ -6,30 +6,20 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/reject.h"
 #include "exr/write_frame.h"
 #include "plan/preset.h"
-#include "resolve/accumulate.h"
-#include "stages/combine_resolved.h"
+#include "stages/accumulate_frame.h"
 #include "stages/find_cut.h"
 #include "stages/follow_motion.h"
 #include "stages/frame_window.h"
-#include "stages/gather_frame.h"
-#include "stages/order_layers.h"
 #include "stages/preflight.h"
 #include "stages/previews.h"
+#include "stages/settle_layers.h"
 #include "stages/two_sided_pass.h"
 #include "stages/write_resolved.h"
 
 namespace varve {
 namespace {
-
-/// What one subject carries from frame to frame: the reader's part and the accumulator's.
-struct SubjectState {
-  ForwardMemory forward;
-  History history;
-  GatherMemory gathered;
-};
 
 /// Made once, used for every frame.
 struct Setup {
@@ -57,7 +47,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-Setup set_up(const OrderedLayers& ordered) {
+Setup set_up(const SettledLayers& ordered) {
   const ResolveJob& job = ordered.job;
   const JitterSource jitter = parse_jitter_source(job.jitter);
   SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
@@ -134,47 +124,6 @@ void look_for_cut(const SourceFrame& source, FrameTrace& before, ScheduledFrame&
   before = std::move(now);
 }
 
-Resolved resolve_recursive(const Setup& s, const Present& present, const ScheduledFrame& scheduled, SubjectState& state,
-                           Workers& workers) {
-  const Parameters& parameters = s.job.parameters;
-  if (scheduled.restart) state.history = {};
-  Resolved r;
-  const std::uint32_t restart_bit = scheduled.restart_reason == "first frame" ? kRejectFirstFrame : kRejectCut;
-  r.accumulated = accumulate(present, state.history, parameters.recursive, parameters.rectify, present.jitter,
-                             restart_bit, diagnostics_wanted(s.aovs), workers);
-  const auto is_prediction = [](const Aov* aov) { return aov->name == "prediction"; };
-  if (std::any_of(s.aovs.begin(), s.aovs.end(), is_prediction))
-    r.prediction = predict(present, state.history, parameters.recursive, parameters.rectify, workers);
-  return r;
-}
-
-std::vector<Resolved> resolve_recursive(const Setup& s, const SourceFrame& source, const ScheduledFrame& scheduled,
-                                        std::vector<SubjectState>& states, Workers& workers) {
-  std::vector<Resolved> resolved;
-  for (std::size_t k = 0; k < source.presents.size(); ++k)
-    resolved.push_back(resolve_recursive(s, source.presents[k], scheduled, states[k], workers));
-  return resolved;
-}
-
-/// Empty when asked to stop.
-std::vector<Resolved> resolve_two_sided(TwoSidedPass& pass, std::size_t index, SourceFrame& source) {
-  std::vector<Resolved> resolved;
-  if (std::optional<std::vector<Accumulated>> all = pass.resolve(index, source))
-    for (Accumulated& accumulated : *all) resolved.push_back({std::move(accumulated)});
-  return resolved;
-}
-
-std::vector<Resolved> resolve_gather(const Setup& s, const FrameWindow& window, std::size_t index,
-                                     std::pair<std::size_t, std::size_t> span, std::vector<SubjectState>& states,
-                                     Workers& workers) {
-  std::vector<Resolved> resolved;
-  for (std::size_t k = 0; k < states.size(); ++k)
-    resolved.push_back({gather_frame(window, k, index, span.first, span.second, s.gather, states[k].gathered,
-                                     diagnostics_wanted(s.aovs), workers),
-                        {}});
-  return resolved;
-}
-
 /// What is written where that is not what the history keeps; else empty. What stands in for a pixel is sharpened too.
 Plane<glm::vec4> finish(const Present& present, const History& resolved, const Parameters& parameters,
                         Workers& workers) {
@@ -245,7 +194,7 @@ void write_outputs(const Setup& s, const FrameHeaders& headers, const FileSet& p
 }  // namespace
 
 Plan plan_sequence(const ResolveJob& asked, SequenceInfo& info) {
-  const OrderedLayers ordered = order_layers(asked);
+  const SettledLayers ordered = settle_layers(asked);
   const ResolveJob& job = ordered.job;
   Setup s = set_up(ordered);
   check_outputs(job, schedule_frames(job, s.info, s.hash));
@@ -255,7 +204,7 @@ Plan plan_sequence(const ResolveJob& asked, SequenceInfo& info) {
 
 ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& events) {
   // Probe and plan: headers only, unless depth says which layer is in front.
-  const OrderedLayers ordered = order_layers(asked);
+  const SettledLayers ordered = settle_layers(asked);
   const ResolveJob& job = ordered.job;
   Setup s = set_up(ordered);
   if (events.planned) events.planned(s.info, s.plan);
@@ -289,6 +238,7 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
   for (const ScheduledFrame& scheduled : schedule) total += scheduled.write;
   const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
 
+  const AccumulatorOptions accumulator{job.parameters, s.gather, s.aovs};
   const bool gathers = job.parameters.accumulator == Accumulator::gather;
   std::optional<TwoSidedPass> two_sided;
   if (job.parameters.accumulator == Accumulator::two_sided)
@@ -327,9 +277,10 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
       look_for_cut(source, trace, scheduled, events, workers);
       report.restart = scheduled.restart_reason;
     }
-    std::vector<Resolved> resolved = two_sided ? resolve_two_sided(*two_sided, i, source)
-                                     : gathers ? resolve_gather(s, window, i, {first, last}, states, workers)
-                                               : resolve_recursive(s, source, scheduled, states, workers);
+    std::vector<Resolved> resolved = two_sided ? accumulate_two_sided(*two_sided, i, source)
+                                     : gathers
+                                         ? accumulate_gather(accumulator, window, i, {first, last}, states, workers)
+                                         : accumulate_recursive(accumulator, source, scheduled, states, workers);
     if (summary.stopped) break;
     hold_layers(source, resolved, workers);
     count(report, source, resolved, workers);

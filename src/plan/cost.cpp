@@ -145,6 +145,15 @@ std::size_t color_bytes(const SequenceInfo& info) {
   return bytes;
 }
 
+// What is read of subjects that become one before they are accumulated: color, validity, vectors and depth.
+std::size_t bytes_of_inputs(const SequenceInfo& info) {
+  std::size_t bytes = 0;
+  for (const ColorOutput& output : info.first.outputs)
+    for (const std::size_t i : output.inputs)
+      if (output.combine != Combine::alone && !output.after) bytes += 40 * pixels_of(info, info.first.subjects[i]);
+  return bytes;
+}
+
 std::size_t diagnostic_bytes_per_pixel(const OutputRequest& output, Accumulator accumulator) {
   std::size_t bytes = 0;
   for (const Aov* aov : planned_aovs(output, accumulator))
@@ -177,7 +186,8 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
   const std::size_t extra = 16 * std::size_t((filter == HistoryFilter::bspline3 || filter == HistoryFilter::bspline5) +
                                              plan.use_jitter + (parameters.finish.sharpen > 0));
   std::size_t histories = 0, at_work = 0;
-  for (const Subject& subject : info.first.subjects) {
+  for (const Subject* resolved : accumulated_subjects(info.first.outputs, info.first.subjects)) {
+    const Subject& subject = *resolved;
     const std::size_t pixels = pixels_of(info, subject);
     // color, count and weight; depth of the last frame
     histories += pixels * (2 * (16 + 8) + (depth_test ? 4 : 0) + tested + masks + shown);
@@ -193,7 +203,7 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
                                  (in_space ? 16 : 0) + diagnostic_bytes_per_pixel(output, parameters.accumulator)) +
                            window_bytes(parameters.rectify, window_of(info, subject)));
   }
-  return kBaseBytes + raw + histories + at_work;
+  return kBaseBytes + raw + histories + at_work + bytes_of_inputs(info);
 }
 
 double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parameters& parameters,
@@ -222,7 +232,8 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
   if (parameters.accumulator == Accumulator::gather) {
     if (parameters.finish.sharpen > 0) per_pixel += kSharpen;
     per_pixel += gather_nanoseconds(parameters);
-    for (const Subject& subject : info.first.subjects) nanoseconds += double(pixels_of(info, subject)) * per_pixel;
+    for (const Subject* subject : accumulated_subjects(info.first.outputs, info.first.subjects))
+      nanoseconds += double(pixels_of(info, *subject)) * per_pixel;
     return nanoseconds * 1e-9 / std::max(1, threads);
   }
   per_pixel += kBlend + cost_of(recursive.history_filter);
@@ -233,7 +244,8 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
   if (parameters.finish.sharpen > 0) per_pixel += kSharpen;
   per_pixel += box_cost(parameters.rectify);
   const double passes = two_sided ? kTwoSidedPasses : 1;
-  for (const Subject& subject : info.first.subjects) {
+  for (const Subject* resolved : accumulated_subjects(info.first.outputs, info.first.subjects)) {
+    const Subject& subject = *resolved;
     const double motion = !plan.use_motion ? 0 : subject.backward ? kMotion : subject.forward ? kMotion + kInvert : 0;
     const std::size_t planes = subject.companions.size();
     const double companions = planes == 0 ? 0 : kCompanionMove + double(planes) * (kCompanion + kConvert + kSanitize);
