@@ -12,6 +12,7 @@
 #include "stages/find_cut.h"
 #include "stages/follow_motion.h"
 #include "stages/frame_window.h"
+#include "stages/place_samples.h"
 #include "stages/preflight.h"
 #include "stages/previews.h"
 #include "stages/settle_layers.h"
@@ -100,7 +101,11 @@ bool is_needed(const std::vector<ScheduledFrame>& schedule, std::size_t index, c
 /// The file's pixels as stored, for what stands beside the color when it is written.
 FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& workers) {
   if (!s.job.request.keep_channels) return FileSet(headers.files.size());
-  return in_frame(headers.frame, [&] { return read_files(headers, {.whole_parts = true}, workers); });
+  return in_frame(headers.frame, [&] {
+    FileSet pixels = read_files(headers, {.whole_parts = true}, workers);
+    divide_passed_vectors(headers, pixels.front(), workers);
+    return pixels;
+  });
 }
 
 /// Decides whether a frame begins a new shot, before it meets its history: marks it in the schedule if so, and says
@@ -155,7 +160,8 @@ void count(FrameReport& report, const SourceFrame& source, const std::vector<Res
     report.opacity_held += source.presents[k].opacity_held;
     if (source.presents[k].companions.empty()) continue;
     report.companions_not_finite += source.presents[k].companions_not_finite;
-    if (single[k])  // what several colors were made of adds up to none of them
+    if (single[k] &&
+        !resolved[k].accumulated.history.empty())  // what several colors were made of adds up to none of them
       report.lights = report.lights + measure_light_sum(source.presents[k], resolved[k].accumulated.history, workers);
   }
 }
@@ -171,24 +177,26 @@ WriteOptions write_options(const Setup& s, const std::string& frames_used) {
 void write_outputs(const Setup& s, const FrameHeaders& headers, const FileSet& pixels,
                    const std::vector<ResolvedSubject>& resolved, const std::string& frames_used, FrameReport& report,
                    Workers& workers) {
-  const FileHeader& source = headers.files.front();
+  const FileHeader &source = headers.files.front(), &stored = files_on_disk(headers).front();
   const WriteOptions options = write_options(s, frames_used);
   const std::vector<const Aov*> none;
   const bool apart = s.job.diagnostics.has_value();
   FileOutput color =
       resolved_parts(source, pixels.front(), resolved, apart ? none : s.aovs, s.job.request.keep_channels,
-                     s.out_of_working_space ? &*s.out_of_working_space : nullptr, workers);
+                     headers.passed_on, s.out_of_working_space ? &*s.out_of_working_space : nullptr, workers);
   for (OutputPart& part : color.parts)
     if (!part.copy_chunks) part.compression = s.job.compression;
   report.half_overflows = color.half_overflows;
+  place_samples(headers, color.parts);
   if (apart) {
-    const FileOutput diagnostics = diagnostic_parts(source, resolved, s.aovs, workers);
-    write_frame(s.job.diagnostics->path(headers.frame), source, diagnostics.parts, options, workers);
+    FileOutput diagnostics = diagnostic_parts(source, resolved, s.aovs, workers);
+    place_samples(headers, diagnostics.parts);
+    write_frame(s.job.diagnostics->path(headers.frame), stored, diagnostics.parts, options, workers);
   }
   if (!s.job.preview_folder.empty())
     write_previews(s.job.preview_folder, headers.frame, resolved, s.aovs, s.display ? &*s.display : nullptr, workers);
   // The resolved frame goes last: once it is there, everything that belongs to it is.
-  write_frame(report.path, source, color.parts, options, workers);
+  write_frame(report.path, stored, color.parts, options, workers);
 }
 
 }  // namespace

@@ -22,6 +22,22 @@ Resolved accumulate_one(const AccumulatorOptions& options, const Present& presen
   return r;
 }
 
+/// Places among what is accumulated that are gathered together: samples meet in one pixel, everything else alone.
+std::vector<std::vector<std::size_t>> gathered_together(const FrameHeaders& headers) {
+  std::vector<std::vector<std::size_t>> groups;
+  std::size_t next = 0;
+  for (const ColorOutput& output : headers.outputs) {
+    const std::size_t count = output.after ? output.inputs.size() : 1;
+    for (std::size_t k = next; k < next + count; ++k)
+      if (k > next && output.combine == Combine::samples)
+        groups.back().push_back(k);
+      else
+        groups.push_back({k});
+    next += count;
+  }
+  return groups;
+}
+
 }  // namespace
 
 std::vector<Resolved> accumulate_recursive(const AccumulatorOptions& options, const SourceFrame& source,
@@ -43,10 +59,11 @@ std::vector<Resolved> accumulate_two_sided(TwoSidedPass& pass, std::size_t index
 std::vector<Resolved> accumulate_gather(const AccumulatorOptions& options, const FrameWindow& window, std::size_t index,
                                         std::pair<std::size_t, std::size_t> span, std::vector<SubjectState>& states,
                                         Workers& workers) {
-  std::vector<Resolved> resolved;
-  for (std::size_t k = 0; k < states.size(); ++k)
-    resolved.push_back({gather_frame(window, k, index, span.first, span.second, options.gather, states[k].gathered,
-                                     diagnostics_wanted(options.aovs), workers)});
+  std::vector<Resolved> resolved(states.size());
+  for (const std::vector<std::size_t>& group : gathered_together(window[index].headers))
+    resolved[group.front()].accumulated =
+        gather_frame(window, group, index, span.first, span.second, options.gather, states[group.front()].gathered,
+                     diagnostics_wanted(options.aovs), workers);
   return resolved;
 }
 

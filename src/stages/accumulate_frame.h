@@ -15,7 +15,7 @@ namespace varve {
 struct SubjectState {
   ForwardMemory forward;
   History history;
-  GatherMemory gathered;
+  std::vector<GatherMemory> gathered;  ///< of each sample
 };
 
 struct AccumulatorOptions {
@@ -32,7 +32,8 @@ std::vector<Resolved> accumulate_recursive(const AccumulatorOptions& options, co
 /// Empty when asked to stop.
 std::vector<Resolved> accumulate_two_sided(TwoSidedPass& pass, std::size_t index, SourceFrame& source);
 
-/// From the frames between span.first and span.second, all held by the window.
+/// From the frames between span.first and span.second, all held by the window. What samples of the same pixels make
+/// together is the result of the first of them, and the others are empty.
 std::vector<Resolved> accumulate_gather(const AccumulatorOptions& options, const FrameWindow& window, std::size_t index,
                                         std::pair<std::size_t, std::size_t> span, std::vector<SubjectState>& states,
                                         Workers& workers);

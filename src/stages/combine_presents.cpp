@@ -7,6 +7,7 @@
 
 #include "layers/composite.h"
 #include "layers/transmittance.h"
+#include "samples/resolve_samples.h"
 
 namespace varve {
 namespace {
@@ -66,7 +67,8 @@ const Window& window_of(const FrameHeaders& headers, const ColorOutput& output) 
 std::vector<bool> are_single_subjects(const FrameHeaders& headers) {
   std::vector<bool> single;
   for (const ColorOutput& output : headers.outputs)
-    single.insert(single.end(), output.after ? output.inputs.size() : 1, output.after || output.inputs.size() == 1);
+    single.insert(single.end(), output.after ? output.inputs.size() : 1,
+                  output.after || output.combine != Combine::layers);
   return single;
 }
 
@@ -81,6 +83,8 @@ std::vector<Present> combine_presents(const FrameHeaders& headers, std::vector<P
     while (end < outputs.size() && outputs[end].only_compared) ++end;
     if (outputs[i].combine == Combine::layers)
       combine_layers(headers, outputs.subspan(i, end - i), std::move(inputs), options, accumulated, workers);
+    else if (outputs[i].combine == Combine::samples && !outputs[i].after)
+      accumulated.push_back(resolve_samples(pointers(inputs), options.sample_filter, workers, options.show));
     else
       for (Present& present : inputs) accumulated.push_back(std::move(present));
     i = end;

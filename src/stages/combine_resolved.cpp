@@ -6,6 +6,8 @@
 
 #include "layers/composite.h"
 #include "layers/transmittance.h"
+#include "samples/mean_of_results.h"
+#include "samples/resolve_samples.h"
 
 namespace varve {
 namespace {
@@ -47,6 +49,26 @@ Plane<float> relative_difference(const Plane<glm::vec4>& a, const Plane<glm::vec
   return out;
 }
 
+/// Samples that were accumulated apart, or all together: then the result is that of the first, and the others are
+/// empty.
+ResolvedColors::Made mean_of_samples(const SourceFrame& source, const ColorOutput& output,
+                                     const std::vector<Resolved>& resolved, std::size_t first,
+                                     const CombineOptions& options, Workers& workers) {
+  std::vector<const Present*> presents;
+  std::vector<const Accumulated*> results;
+  std::vector<const Plane<glm::vec4>*> predictions;
+  for (std::size_t k = first; k < first + output.inputs.size(); ++k) {
+    presents.push_back(&source.presents[k]);
+    if (!resolved[k].accumulated.history.empty()) results.push_back(&resolved[k].accumulated);
+    if (!resolved[k].prediction.empty()) predictions.push_back(&resolved[k].prediction.color);
+  }
+  ResolvedColors::Made made;
+  made.present = resolve_samples(presents, SampleFilter::none, workers, options.show);
+  if (results.size() > 1) made.resolved.accumulated = mean_of_results(results, workers);
+  if (!predictions.empty()) made.resolved.prediction.color = mean_of_colors(predictions, workers);
+  return made;
+}
+
 }  // namespace
 
 void hold_layers(const SourceFrame& source, std::vector<Resolved>& resolved, Workers& workers) {
@@ -70,9 +92,14 @@ ResolvedColors combine_resolved(const SourceFrame& source, const std::vector<Res
   for (const ColorOutput& output : source.headers.outputs) {
     const std::size_t first = next;
     next += output.after ? output.inputs.size() : 1;
-    if (output.after) all.made.push_back(composite(source, output, resolved, first, options, workers));
+    if (output.after)
+      all.made.push_back(output.combine == Combine::samples
+                             ? mean_of_samples(source, output, resolved, first, options, workers)
+                             : composite(source, output, resolved, first, options, workers));
     const Present& present = output.after ? all.made.back().present : source.presents[first];
-    const Resolved& made = output.after ? all.made.back().resolved : resolved[first];
+    // Samples that were gathered together have made one result already, that of the first.
+    const bool stands = !output.after || all.made.back().resolved.accumulated.history.empty();
+    const Resolved& made = stands ? resolved[first] : all.made.back().resolved;
     if (output.only_compared) {
       const Plane<glm::vec4>& color = all.colors[compare].accumulated->history.color;
       all.differences.push_back(relative_difference(color, made.accumulated.history.color, workers));
