@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "commands.h"
 #include "plan/describe.h"
-#include "stages/order_layers.h"
 #include "stages/probe_motion.h"
+#include "stages/settle_layers.h"
 
 namespace varve::cli {
 
@@ -27,7 +27,7 @@ ResolveJob readable(const ResolveJob& job, bool asks_pixels) {
 
 int run_probe(Settings& settings) {
   finish_job(settings);
-  const OrderedLayers ordered = order_layers(readable(settings.job, settings.motion));
+  const SettledLayers ordered = settle_layers(readable(settings.job, settings.motion));
   const ResolveJob& job = ordered.job;
   const JitterSource jitter = parse_jitter_source(job.jitter);
   const SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter, parse_camera_source(job.camera));

@@ -69,6 +69,7 @@ JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
       .number("restarted", double(report.restarted))
       .number("clipped", double(report.clipped))
       .number("half_overflows", double(report.half_overflows))
+      .number("opacity_held", double(report.opacity_held))
       .number("companions_not_finite", double(report.companions_not_finite))
       .number("light_pixels", double(report.lights.pixels))
       .number("light_pixels_adding_up", double(report.lights.adding_up))
@@ -110,6 +111,7 @@ std::string frame_line(const FrameReport& report, int done, int total) {
     if (report.vectors_bad > 0) line += count_text(report.vectors_bad, "unusable vectors");
     if (report.by_camera > 0) line += share_text(report.by_camera, report.vectors, "of the vectors by the camera");
     if (report.lens_added > 0) line += share_text(report.lens_added, report.vectors, "of the vectors with zoom added");
+    if (report.opacity_held > 0) line += count_text(report.opacity_held, "layer opacities held within 0 and 1");
     if (report.half_overflows > 0) line += count_text(report.half_overflows, "values beyond half held at 65504");
   }
   return line + ", PROGRESS: " + std::to_string(percent(done, total)) + "%";

@@ -7,31 +7,21 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/reject.h"
 #include "exr/write_frame.h"
 #include "plan/preset.h"
-#include "resolve/accumulate.h"
-#include "stages/combine_resolved.h"
+#include "stages/accumulate_frame.h"
 #include "stages/find_cut.h"
 #include "stages/follow_motion.h"
 #include "stages/frame_window.h"
-#include "stages/gather_frame.h"
-#include "stages/order_layers.h"
 #include "stages/place_samples.h"
 #include "stages/preflight.h"
 #include "stages/previews.h"
+#include "stages/settle_layers.h"
 #include "stages/two_sided_pass.h"
 #include "stages/write_resolved.h"
 
 namespace varve {
 namespace {
-
-/// What one subject carries from frame to frame: the reader's part and the accumulator's.
-struct SubjectState {
-  ForwardMemory forward;
-  History history;
-  std::vector<GatherMemory> gathered;  ///< of each sample
-};
 
 /// Made once, used for every frame.
 struct Setup {
@@ -60,7 +50,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-Setup set_up(const OrderedLayers& ordered) {
+Setup set_up(const SettledLayers& ordered) {
   const ResolveJob& job = ordered.job;
   const JitterSource jitter = parse_jitter_source(job.jitter);
   CameraSource cameras = parse_camera_source(job.camera);
@@ -141,64 +131,6 @@ void look_for_cut(const SourceFrame& source, FrameTrace& before, ScheduledFrame&
     }
   }
   before = std::move(now);
-}
-
-Resolved resolve_recursive(const Setup& s, const Present& present, const ScheduledFrame& scheduled, SubjectState& state,
-                           Workers& workers) {
-  const Parameters& parameters = s.job.parameters;
-  if (scheduled.restart) state.history = {};
-  Resolved r;
-  const std::uint32_t restart_bit = scheduled.restart_reason == "first frame" ? kRejectFirstFrame : kRejectCut;
-  r.accumulated = accumulate(present, state.history, parameters.recursive, parameters.rectify, present.jitter,
-                             restart_bit, diagnostics_wanted(s.aovs), workers);
-  const auto is_prediction = [](const Aov* aov) { return aov->name == "prediction"; };
-  if (std::any_of(s.aovs.begin(), s.aovs.end(), is_prediction))
-    r.prediction = predict(present, state.history, parameters.recursive, parameters.rectify, workers);
-  return r;
-}
-
-std::vector<Resolved> resolve_recursive(const Setup& s, const SourceFrame& source, const ScheduledFrame& scheduled,
-                                        std::vector<SubjectState>& states, Workers& workers) {
-  std::vector<Resolved> resolved;
-  for (std::size_t k = 0; k < source.presents.size(); ++k)
-    resolved.push_back(resolve_recursive(s, source.presents[k], scheduled, states[k], workers));
-  return resolved;
-}
-
-/// Empty when asked to stop.
-std::vector<Resolved> resolve_two_sided(TwoSidedPass& pass, std::size_t index, SourceFrame& source) {
-  std::vector<Resolved> resolved;
-  if (std::optional<std::vector<Accumulated>> all = pass.resolve(index, source))
-    for (Accumulated& accumulated : *all) resolved.push_back({std::move(accumulated)});
-  return resolved;
-}
-
-/// Places among what is accumulated that are gathered together: samples meet in one pixel, everything else alone.
-std::vector<std::vector<std::size_t>> gathered_together(const FrameHeaders& headers) {
-  std::vector<std::vector<std::size_t>> groups;
-  std::size_t next = 0;
-  for (const ColorOutput& output : headers.outputs) {
-    const std::size_t count = output.after ? output.inputs.size() : 1;
-    for (std::size_t k = next; k < next + count; ++k)
-      if (k > next && output.combine == Combine::samples)
-        groups.back().push_back(k);
-      else
-        groups.push_back({k});
-    next += count;
-  }
-  return groups;
-}
-
-/// What samples make together is the result of the first of them.
-std::vector<Resolved> resolve_gather(const Setup& s, const FrameWindow& window, std::size_t index,
-                                     std::pair<std::size_t, std::size_t> span, std::vector<SubjectState>& states,
-                                     Workers& workers) {
-  std::vector<Resolved> resolved(states.size());
-  for (const std::vector<std::size_t>& group : gathered_together(window[index].headers))
-    resolved[group.front()].accumulated =
-        gather_frame(window, group, index, span.first, span.second, s.gather, states[group.front()].gathered,
-                     diagnostics_wanted(s.aovs), workers);
-  return resolved;
 }
 
 /// What is written where that is not what the history keeps; else empty. What stands in for a pixel is sharpened too.
@@ -284,7 +216,7 @@ void write_outputs(const Setup& s, const FrameHeaders& headers, const FileSet& p
 }  // namespace
 
 Plan plan_sequence(const ResolveJob& asked, SequenceInfo& info) {
-  const OrderedLayers ordered = order_layers(asked);
+  const SettledLayers ordered = settle_layers(asked);
   const ResolveJob& job = ordered.job;
   Setup s = set_up(ordered);
   check_outputs(job, schedule_frames(job, s.info, s.hash));
@@ -294,7 +226,7 @@ Plan plan_sequence(const ResolveJob& asked, SequenceInfo& info) {
 
 ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& events) {
   // Probe and plan: headers only, unless depth says which layer is in front.
-  const OrderedLayers ordered = order_layers(asked);
+  const SettledLayers ordered = settle_layers(asked);
   const ResolveJob& job = ordered.job;
   Setup s = set_up(ordered);
   if (events.planned) events.planned(s.info, s.plan);
@@ -333,6 +265,7 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
   for (const ScheduledFrame& scheduled : schedule) total += scheduled.write;
   const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
 
+  const AccumulatorOptions accumulator{job.parameters, s.gather, s.aovs};
   const bool gathers = job.parameters.accumulator == Accumulator::gather;
   std::optional<TwoSidedPass> two_sided;
   if (job.parameters.accumulator == Accumulator::two_sided)
@@ -372,9 +305,10 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
       look_for_cut(source, trace, scheduled, events, workers);
       report.restart = scheduled.restart_reason;
     }
-    std::vector<Resolved> resolved = two_sided ? resolve_two_sided(*two_sided, i, source)
-                                     : gathers ? resolve_gather(s, window, i, {first, last}, states, workers)
-                                               : resolve_recursive(s, source, scheduled, states, workers);
+    std::vector<Resolved> resolved = two_sided ? accumulate_two_sided(*two_sided, i, source)
+                                     : gathers
+                                         ? accumulate_gather(accumulator, window, i, {first, last}, states, workers)
+                                         : accumulate_recursive(accumulator, source, scheduled, states, workers);
     if (summary.stopped) break;
     hold_layers(source, resolved, workers);
     count(report, source, resolved, workers);

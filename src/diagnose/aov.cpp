@@ -58,6 +58,10 @@ constexpr Aov kAovs[] = {
      "With --layers: the change of transmittance across that layer, or what the background is seen through."},
     {"layers", "", PixelType::float32, "layers", "0 and up", "turbo", 0, 8,
      "With --layers: layers that have a part in the pixel."},
+    {"layer-difference", "", PixelType::float32, "relative", "0 to 2", "inferno", 0, 1,
+     "With --layers: how much composite and each differ, in RGB, over the larger of both. Both are worked out, so all "
+     "does not mean this plane.",
+     kByAll, true},
 };
 
 constexpr RejectName kBits[] = {

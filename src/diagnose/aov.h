@@ -24,6 +24,7 @@ struct Aov {
   double preview_low, preview_high;  ///< values shown as the ends of the color map
   std::string_view meaning;
   unsigned filled_by = kByAll;
+  bool only_by_name = false;  ///< costs work of its own: `all` does not mean it
 };
 
 std::span<const Aov> diagnostic_aovs();

@@ -123,6 +123,17 @@ ColorOutput composite_output(const ChannelIndex& index, std::span<const Subject>
   return output;
 }
 
+/// And, to be compared with it, what the other mode makes of the same layers.
+void add_composite(ColorOutput output, const LayersRequest& request, std::vector<ColorOutput>& outputs) {
+  outputs.push_back(std::move(output));
+  if (!request.difference) return;
+  ColorOutput other = outputs.back();
+  other.after = !other.after;
+  other.only_compared = true;
+  other.subject.notes.clear();
+  outputs.push_back(std::move(other));
+}
+
 }  // namespace
 
 std::vector<ColorOutput> color_outputs(std::span<const FileHeader> files, std::span<const Subject> subjects,
@@ -143,7 +154,7 @@ std::vector<ColorOutput> color_outputs(std::span<const FileHeader> files, std::s
     if (stack.layers.size() == 1)  // nothing to composite
       outputs.push_back({subjects[stack.layers.front()], stack.layers});
     else
-      outputs.push_back(composite_output(index, subjects, stack, request.combine_layers));
+      add_composite(composite_output(index, subjects, stack, request.combine_layers), request.combine_layers, outputs);
   return outputs;
 }
 

@@ -158,7 +158,7 @@ std::vector<Subject> accumulated(const SequenceInfo& info) {
 std::size_t bytes_to_combine(const SequenceInfo& info) {
   std::size_t bytes = 0;
   for (const ColorOutput& output : info.first.outputs)
-    if (output.combine == Combine::samples && !output.after)
+    if (output.combine != Combine::alone && !output.after)
       bytes += output.inputs.size() * pixels_of(info, info.first.subjects[output.inputs.front()]) * (16 + 4 + 8 + 4);
   return bytes;
 }

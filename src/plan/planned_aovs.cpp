@@ -26,7 +26,7 @@ std::vector<const Aov*> planned_aovs(const OutputRequest& request, Accumulator a
     if (name == "all") {
       planned.clear();
       for (const Aov& aov : diagnostic_aovs())
-        if (can_fill(aov)) planned.push_back(&aov);
+        if (can_fill(aov) && !aov.only_by_name) planned.push_back(&aov);
       return planned;
     }
     const Aov* aov = find_aov(name);

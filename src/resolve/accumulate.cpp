@@ -8,6 +8,7 @@
 #include "resolve/accumulate_row.h"
 #include "resolve/box_space.h"
 #include "resolve/bspline.h"
+#include "resolve/empty_spans.h"
 #include "resolve/rectify_shapes.h"
 #include "resolve/row_passes.h"
 #include "resolve/sample_weights.h"
@@ -64,6 +65,7 @@ struct Scratch {
   Plane<std::uint32_t> reject;
   Plane<float> trust, steadiness;
   Plane<double> present_weight;
+  std::vector<Span> spans;
   RowCounts counts{};
   std::array<std::size_t, kRejectBits> rejected{};
 
@@ -220,6 +222,7 @@ class RowRunner {
   }
 
   AccumulateCounts all_rows() {
+    if (may_skip()) empty_ = find_empty_blocks(v_, workers_);
     if (!shapes_) {
       run(0, v_.height);
     } else {
@@ -243,7 +246,35 @@ class RowRunner {
     });
   }
 
+  /// Where a pixel at rest comes of itself alone, and nothing but the kernel looks at it, one may stand for many.
+  bool may_skip() const {
+    const RowPassView& p = steps_.passes;
+    const bool reads_itself = v_.filter != HistoryFilter::cubic && spline_degree(v_.filter) == 0;
+    const bool kernel_alone = !shapes_ && !steps_.fetched && !steps_.rectified && !steps_.companions &&
+                              !p.tests_surfaces && !p.tests_vectors && !p.weighs && !p.finishes;
+    return reads_itself && kernel_alone && !v_.depth.origin && v_.history_width > 0 && !v_.leave_present_out;
+  }
+
   void run_row(int y, int worker) {
+    if (empty_.empty.empty()) return run_whole_row(y, worker);
+    Scratch& scratch = scratch_[std::size_t(worker)];
+    find_spans(v_, empty_, y, scratch.spans);
+    if (scratch.spans.size() == 1 && !scratch.spans.front().empty) return run_whole_row(y, worker);
+    bool valid = true;
+    for (const Span& span : scratch.spans) {
+      const AccumulateView view = view_span(v_, span);
+      const RowScratch rows = scratch.view();
+      kernel_.fetch_history(view, y, rows);
+      kernel_.rectify_history(view, y, rows, scratch.counts);
+      kernel_.blend_present(view, y, rows, scratch.counts);
+      count_bits(rows.reject, view.width, scratch.rejected);
+      if (span.empty) spread_first(v_, y, span);
+      valid = valid && v_.out_rows_valid[y];
+    }
+    v_.out_rows_valid[y] = valid;
+  }
+
+  void run_whole_row(int y, int worker) {
     const RowPassView& passes = steps_.passes;
     Scratch& scratch = scratch_[std::size_t(worker)];
     const RowScratch rows = scratch.view();
@@ -286,6 +317,7 @@ class RowRunner {
   RowKernel kernel_;
   Workers& workers_;
   WindowContents contents_;
+  EmptyBlocks empty_;
   std::vector<Scratch> scratch_;
   std::vector<ShapeScratch> room_;
 };

@@ -19,10 +19,9 @@ inline constexpr int kPresentBorder = 3;
 
 /// What is shown of how several layers or samples became one; empty where they did not, or where it is not asked for.
 struct CombinePlanes {
-  Plane<float> winner;      ///< 1 and up: whose motion the pixel follows, the nearest being 1; 0: the background's
-  Plane<float> variation;   ///< what decided it: change of transmittance across the winner, 0..1
-  Plane<float> touched;     ///< how many have a part in the pixel
-  Plane<float> difference;  ///< composite first against each by itself, relative to the greater
+  Plane<float> winner;     ///< 1 and up: whose motion the pixel follows, the nearest being 1; 0: the background's
+  Plane<float> variation;  ///< what decided it: change of transmittance across the winner, 0..1
+  Plane<float> touched;    ///< how many have a part in the pixel
 };
 
 struct Present {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "layers/composite.h"
@@ -17,28 +18,44 @@ std::vector<const Present*> pointers(const std::vector<Present>& presents) {
   return all;
 }
 
-/// Layers of one output: one present, or each of them as it is accumulated by itself.
-std::vector<Present> combine_layers(const FrameHeaders& headers, const ColorOutput& output, std::vector<Present> layers,
-                                    const CombineOptions& options, Workers& workers) {
-  std::vector<bool> cumulative, gray;
+bool is_gray(const Subject& layer) {
+  const std::optional<TransmittanceChannels>& t = layer.transmittance;
+  return t && t->channels[0] == t->channels[1] && t->channels[1] == t->channels[2];
+}
+
+/// Each layer says what it lets through by itself, within 0 and 1.
+void settle_transmittance(const FrameHeaders& headers, const ColorOutput& output, std::vector<Present>& layers,
+                          Workers& workers) {
+  std::vector<bool> cumulative;
   for (const std::size_t i : output.inputs) {
     const std::optional<TransmittanceChannels>& t = headers.subjects[i].transmittance;
     cumulative.push_back(t && t->cumulative);
-    gray.push_back(t && t->channels[0] == t->channels[1] && t->channels[1] == t->channels[2]);
   }
   if (std::find(cumulative.begin(), cumulative.end(), true) != cumulative.end())
     separate_transmittance(layers, cumulative, workers);
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    hold_opacity(layers[i], workers);
-    if (!output.after) continue;
-    if (gray[i]) fold_into_alpha(layers[i], workers);
-    carry_transmittance(layers[i], workers);
+  for (Present& layer : layers) hold_opacity(layer, workers);
+}
+
+/// A stack of layers as all outputs that are made of it accumulate it: as one present, or as each of them.
+void combine_layers(const FrameHeaders& headers, std::span<const ColorOutput> outputs, std::vector<Present> layers,
+                    const CombineOptions& options, std::vector<Present>& accumulated, Workers& workers) {
+  settle_transmittance(headers, outputs.front(), layers, workers);
+  std::optional<Present> composite;
+  for (const ColorOutput& output : outputs)
+    if (!output.after)
+      composite = composite_presents(pointers(layers), window_of(headers, output), options.roles.combine_layers.rule,
+                                     options.show, workers);
+  for (const ColorOutput& output : outputs) {
+    if (!output.after) {
+      accumulated.push_back(std::move(*composite));
+      continue;
+    }
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      if (is_gray(headers.subjects[output.inputs[i]])) fold_into_alpha(layers[i], workers);
+      carry_transmittance(layers[i], workers);
+      accumulated.push_back(std::move(layers[i]));
+    }
   }
-  if (output.after) return layers;
-  std::vector<Present> one;
-  one.push_back(composite_presents(pointers(layers), window_of(headers, output), options.roles.combine_layers.rule,
-                                   options.show, workers));
-  return one;
 }
 
 }  // namespace
@@ -58,17 +75,19 @@ std::vector<bool> are_single_subjects(const FrameHeaders& headers) {
 std::vector<Present> combine_presents(const FrameHeaders& headers, std::vector<Present> read,
                                       const CombineOptions& options, Workers& workers) {
   std::vector<Present> accumulated;
-  for (const ColorOutput& output : headers.outputs) {
+  const std::span<const ColorOutput> outputs = headers.outputs;
+  for (std::size_t i = 0; i < outputs.size();) {
     std::vector<Present> inputs;
-    for (const std::size_t i : output.inputs) inputs.push_back(std::move(read[i]));
-    if (output.combine == Combine::layers)
-      inputs = combine_layers(headers, output, std::move(inputs), options, workers);
-    if (output.combine == Combine::samples && !output.after) {
-      Present one = resolve_samples(pointers(inputs), options.sample_filter, workers, options.show);
-      inputs.clear();
-      inputs.push_back(std::move(one));
-    }
-    for (Present& present : inputs) accumulated.push_back(std::move(present));
+    for (const std::size_t k : outputs[i].inputs) inputs.push_back(std::move(read[k]));
+    std::size_t end = i + 1;
+    while (end < outputs.size() && outputs[end].only_compared) ++end;
+    if (outputs[i].combine == Combine::layers)
+      combine_layers(headers, outputs.subspan(i, end - i), std::move(inputs), options, accumulated, workers);
+    else if (outputs[i].combine == Combine::samples && !outputs[i].after)
+      accumulated.push_back(resolve_samples(pointers(inputs), options.sample_filter, workers, options.show));
+    else
+      for (Present& present : inputs) accumulated.push_back(std::move(present));
+    i = end;
   }
   return accumulated;
 }

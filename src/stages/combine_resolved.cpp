@@ -1,5 +1,7 @@
 #include "stages/combine_resolved.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "layers/composite.h"
@@ -30,6 +32,21 @@ ResolvedColors::Made composite(const SourceFrame& source, const ColorOutput& out
   made.resolved.accumulated = composite_resolved(presents, layers, made.present, workers);
   if (predicted) made.resolved.prediction.color = composite_colors(predictions, made.present.color.window(), workers);
   return made;
+}
+
+/// |a - b| over the longer of both, red, green and blue together; 0 where both are black. Of the same window.
+Plane<float> relative_difference(const Plane<glm::vec4>& a, const Plane<glm::vec4>& b, Workers& workers) {
+  const Window& w = a.window();
+  Plane<float> out(w);
+  const auto length = [](const glm::dvec3& c) { return std::sqrt(c.x * c.x + c.y * c.y + c.z * c.z); };
+  workers.for_rows(w.y0, w.y1, [&](int y) {
+    for (int x = w.x0; x < w.x1; ++x) {
+      const glm::dvec3 p(a.at(x, y)), q(b.at(x, y));
+      const double size = std::max(length(p), length(q));
+      out.at(x, y) = size > 0 ? float(length(p - q) / size) : 0.0f;
+    }
+  });
+  return out;
 }
 
 /// Samples that were accumulated apart, or all together: then the result is that of the first, and the others are
@@ -70,21 +87,28 @@ ResolvedColors combine_resolved(const SourceFrame& source, const std::vector<Res
   const auto write = [&](const Subject& subject, const Present& present, const Resolved& r) {
     all.colors.push_back({&subject, &present, &r.accumulated, &r.prediction, nullptr});
   };
-  std::size_t next = 0;  // place among what was accumulated
+  std::size_t next = 0;     // place among what was accumulated
+  std::size_t compare = 0;  // place of the color that the next one may be compared with
   for (const ColorOutput& output : source.headers.outputs) {
-    if (!output.after) {
-      write(output.subject, source.presents[next], resolved[next]);
-      ++next;
+    const std::size_t first = next;
+    next += output.after ? output.inputs.size() : 1;
+    if (output.after)
+      all.made.push_back(output.combine == Combine::samples
+                             ? mean_of_samples(source, output, resolved, first, options, workers)
+                             : composite(source, output, resolved, first, options, workers));
+    const Present& present = output.after ? all.made.back().present : source.presents[first];
+    // Samples that were gathered together have made one result already, that of the first.
+    const bool stands = !output.after || all.made.back().resolved.accumulated.history.empty();
+    const Resolved& made = stands ? resolved[first] : all.made.back().resolved;
+    if (output.only_compared) {
+      const Plane<glm::vec4>& color = all.colors[compare].accumulated->history.color;
+      all.differences.push_back(relative_difference(color, made.accumulated.history.color, workers));
+      all.colors[compare].difference = &all.differences.back();
       continue;
     }
-    const std::size_t first = next;
-    next += output.inputs.size();
-    const bool samples = output.combine == Combine::samples;
-    const ResolvedColors::Made& made =
-        all.made.emplace_back(samples ? mean_of_samples(source, output, resolved, first, options, workers)
-                                      : composite(source, output, resolved, first, options, workers));
-    write(output.subject, made.present, made.resolved.accumulated.history.empty() ? resolved[first] : made.resolved);
-    for (std::size_t i = 0; output.write_inputs && i < output.inputs.size(); ++i)
+    compare = all.colors.size();
+    write(output.subject, present, made);
+    for (std::size_t i = 0; output.write_inputs && output.after && i < output.inputs.size(); ++i)
       write(source.headers.subjects[output.inputs[i]], source.presents[first + i], resolved[first + i]);
   }
   return all;

@@ -25,6 +25,7 @@ struct ResolvedColors {
   };
   std::deque<Made> made;
   std::deque<Plane<glm::vec4>> finished;
+  std::deque<Plane<float>> differences;
   std::vector<ResolvedSubject> colors;
 };
 

@@ -236,7 +236,7 @@ Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubje
   const Present& present = *resolved.present;
   const Accumulated& a = *resolved.accumulated;
   const Window& w = present.color.window();
-  Plane<float> plane(w);
+  Plane<float> plane(w, 0, 0.0f);
   const auto fill = [&](auto value) {
     workers.for_rows(w.y0, w.y1, [&](int y) {
       for (int x = 0; x < w.width(); ++x) plane.row(y)[x] = value(x, y);
@@ -265,6 +265,7 @@ Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubje
   };
   if (aov.name == "layer-index") fill_combined(present.combined.winner);
   if (aov.name == "layer-variation") fill_combined(present.combined.variation);
+  if (aov.name == "layer-difference" && resolved.difference) fill(of(*resolved.difference));
   if (aov.name == "layers") fill_combined(present.combined.touched);
   if (aov.name == "motion")
     fill([&](int x, int y) {

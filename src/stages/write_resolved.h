@@ -21,6 +21,7 @@ struct ResolvedSubject {
   const Accumulated* accumulated = nullptr;
   const History* prediction = nullptr;         ///< only where the plane `prediction` is asked for
   const Plane<glm::vec4>* finished = nullptr;  ///< what is written, where that is not what the history keeps
+  const Plane<float>* difference = nullptr;    ///< to what the other --layers mode gives; only where it is asked for
 
   const Plane<glm::vec4>& color() const {
     return finished && !finished->empty() ? *finished : accumulated->history.color;

@@ -25,6 +25,7 @@ SequenceInfo sequence(const std::vector<std::string>& channels, int frames = 3, 
   info.first.frame = 1;
   info.first.files = {{"a.0001.exr", {part}, {}, 0}};
   info.first.subjects = find_subjects(info.first.files, {});
+  info.first.outputs = color_outputs(info.first.files, info.first.subjects, {});
   info.frames_with_jitter = jitter ? frames : 0;
   info.jitter_source = info.camera = "none found";
   return info;

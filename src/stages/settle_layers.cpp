@@ -1,4 +1,4 @@
-#include "stages/order_layers.h"
+#include "stages/settle_layers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,11 +55,16 @@ std::vector<LayerDepth> measure_depths(const ResolveJob& job, int frame, Workers
   return depths;
 }
 
+bool is_asked_for(const std::vector<std::string>& aovs, const char* name) {
+  return std::find(aovs.begin(), aovs.end(), name) != aovs.end();
+}
+
 }  // namespace
 
-OrderedLayers order_layers(const ResolveJob& job) {
-  OrderedLayers ordered{job, ""};
+SettledLayers settle_layers(const ResolveJob& job) {
+  SettledLayers ordered{job, ""};
   const LayersRequest& request = job.roles.combine_layers;
+  ordered.job.roles.combine_layers.difference = is_asked_for(job.request.aovs, "layer-difference");
   if (request.mode == LayersMode::apart || request.order != LayerOrder::depth) return ordered;
   const std::vector<int> on_disk = job.input.color.frames_on_disk();
   if (on_disk.empty()) return ordered;  // what is missing is told by the probe

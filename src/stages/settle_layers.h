@@ -1,4 +1,4 @@
-// Which layer is in front, told by the depth of one frame.
+// What has to be known of layers before the headers of all frames are read.
 #pragma once
 
 #include <string>
@@ -7,8 +7,9 @@
 
 namespace varve {
 
-/// A job with its layers named front to back, and the sentence that says how they were ordered; "" where nothing was.
-struct OrderedLayers {
+/// A job with its layers named front to back, and with both modes where their difference is to be shown; and the
+/// sentence that says how the layers were ordered, "" where they stand as listed.
+struct SettledLayers {
   ResolveJob job;
   std::string note;
 };
@@ -16,6 +17,6 @@ struct OrderedLayers {
 /// With LayerOrder::depth: by the median depth of what each layer covers in the first frame on disk, so that every part
 /// of a sequence is resolved in the same order; what is equal, and what covers nothing, stays as listed, the latter at
 /// the back. Throws Failure(inconsistent) when a layer has no depth, and what reading throws.
-OrderedLayers order_layers(const ResolveJob& job);
+SettledLayers settle_layers(const ResolveJob& job);
 
 }  // namespace varve

@@ -1,0 +1,70 @@
+#include "stages/accumulate_frame.h"
+
+#include <algorithm>
+
+#include "base/reject.h"
+#include "resolve/accumulate.h"
+
+namespace varve {
+namespace {
+
+Resolved accumulate_one(const AccumulatorOptions& options, const Present& present, const ScheduledFrame& scheduled,
+                        SubjectState& state, Workers& workers) {
+  const Parameters& p = options.parameters;
+  if (scheduled.restart) state.history = {};
+  Resolved r;
+  const std::uint32_t restart_bit = scheduled.restart_reason == "first frame" ? kRejectFirstFrame : kRejectCut;
+  r.accumulated = accumulate(present, state.history, p.recursive, p.rectify, present.jitter, restart_bit,
+                             diagnostics_wanted(options.aovs), workers);
+  const auto is_prediction = [](const Aov* aov) { return aov->name == "prediction"; };
+  if (std::any_of(options.aovs.begin(), options.aovs.end(), is_prediction))
+    r.prediction = predict(present, state.history, p.recursive, p.rectify, workers);
+  return r;
+}
+
+/// Places among what is accumulated that are gathered together: samples meet in one pixel, everything else alone.
+std::vector<std::vector<std::size_t>> gathered_together(const FrameHeaders& headers) {
+  std::vector<std::vector<std::size_t>> groups;
+  std::size_t next = 0;
+  for (const ColorOutput& output : headers.outputs) {
+    const std::size_t count = output.after ? output.inputs.size() : 1;
+    for (std::size_t k = next; k < next + count; ++k)
+      if (k > next && output.combine == Combine::samples)
+        groups.back().push_back(k);
+      else
+        groups.push_back({k});
+    next += count;
+  }
+  return groups;
+}
+
+}  // namespace
+
+std::vector<Resolved> accumulate_recursive(const AccumulatorOptions& options, const SourceFrame& source,
+                                           const ScheduledFrame& scheduled, std::vector<SubjectState>& states,
+                                           Workers& workers) {
+  std::vector<Resolved> resolved;
+  for (std::size_t k = 0; k < source.presents.size(); ++k)
+    resolved.push_back(accumulate_one(options, source.presents[k], scheduled, states[k], workers));
+  return resolved;
+}
+
+std::vector<Resolved> accumulate_two_sided(TwoSidedPass& pass, std::size_t index, SourceFrame& source) {
+  std::vector<Resolved> resolved;
+  if (std::optional<std::vector<Accumulated>> all = pass.resolve(index, source))
+    for (Accumulated& accumulated : *all) resolved.push_back({std::move(accumulated)});
+  return resolved;
+}
+
+std::vector<Resolved> accumulate_gather(const AccumulatorOptions& options, const FrameWindow& window, std::size_t index,
+                                        std::pair<std::size_t, std::size_t> span, std::vector<SubjectState>& states,
+                                        Workers& workers) {
+  std::vector<Resolved> resolved(states.size());
+  for (const std::vector<std::size_t>& group : gathered_together(window[index].headers))
+    resolved[group.front()].accumulated =
+        gather_frame(window, group, index, span.first, span.second, options.gather, states[group.front()].gathered,
+                     diagnostics_wanted(options.aovs), workers);
+  return resolved;
+}
+
+}  // namespace varve
