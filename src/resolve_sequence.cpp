@@ -106,7 +106,8 @@ bool is_needed(const std::vector<ScheduledFrame>& schedule, std::size_t index, c
 /// The file's pixels as stored, for what stands beside the color when it is written.
 FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& workers) {
   if (!s.job.request.keep_channels) return FileSet(headers.files.size());
-  return in_frame(headers.frame, [&] { return read_files(headers, {.whole_parts = true}, workers); });
+  DeepCounts counted;  // when the frame was read for the resolve
+  return in_frame(headers.frame, [&] { return read_files(headers, {.whole_parts = true}, counted, workers); });
 }
 
 /// One subject: the present meets the history.
@@ -187,6 +188,8 @@ Plane<glm::vec4> finish(const Present& present, const History& resolved, const P
 
 void count(FrameReport& report, const SourceFrame& source, const std::vector<Resolved>& resolved, Workers& workers) {
   report.vectors_bad += source.vectors_bad;
+  report.deep_samples += source.deep.samples;
+  report.deep_repaired += source.deep.defects.total();
   for (std::size_t k = 0; k < resolved.size(); ++k) {
     report.pixels += source.presents[k].color.window().pixels();
     report.not_finite += source.presents[k].not_finite;

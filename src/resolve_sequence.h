@@ -23,6 +23,8 @@ struct FrameReport {
   std::array<std::size_t, kRejectBits> rejected{};  ///< pixels with each bit of the diagnostic plane `reject`
   std::size_t pixels = 0, not_finite = 0, vectors_bad = 0, restarted = 0, clipped = 0, half_overflows = 0;
   std::size_t companions_not_finite = 0;  ///< values of --channels that were NaN or infinite
+  std::size_t deep_samples = 0;           ///< of deep parts that were flattened
+  std::size_t deep_repaired = 0;          ///< of these left out or put right: no depth, ZBack before Z, bad alpha
   LightSum lights;                        ///< of the colors that have companions; no pixels without
   std::string restart;                    ///< why the history was dropped; empty if it was not
 };

@@ -178,10 +178,16 @@ void note_vectors(const SequenceInfo& info, std::vector<std::string>& notes) {
 }
 
 void note_parts(const SequenceInfo& info, std::vector<std::string>& notes) {
+  std::set<int> resolved;
+  for (const Subject& subject : info.first.subjects)
+    for (const int part : parts_of(subject)) resolved.insert(part);
   for (const FileHeader& file : info.first.files)
     for (const Part& part : file.parts) {
       const std::string where = part.name.empty() ? file.path : "part " + part.name;
-      if (is_deep(part)) notes.push_back(where + " is deep; it is passed through as it is");
+      const bool color = &file == &info.first.files.front() && resolved.contains(int(&part - file.parts.data()));
+      if (is_deep(part) && !color)
+        notes.push_back(where + " is deep; it is passed through as it is" +
+                        (&file == &info.first.files.front() ? ", unless --layer names it" : ""));
       if (!is_lossy(part.compression) || is_deep(part)) continue;
       std::vector<std::string> data;
       for (const Channel& channel : part.channels) {

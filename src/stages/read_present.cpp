@@ -155,10 +155,15 @@ std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const Chan
 
 }  // namespace
 
-FileSet read_files(const FrameHeaders& headers, const ChannelNeeds& needs, Workers& workers) {
+FileSet read_files(const FrameHeaders& headers, const ChannelNeeds& needs, DeepCounts& deep, Workers& workers) {
+  std::vector<ChannelRef> colors;
+  for (const Subject& subject : headers.subjects)
+    for (const auto& channel : subject.color)
+      if (channel) colors.push_back(*channel);
   FileSet pixels;
   for (int file = 0; file < int(headers.files.size()); ++file)
-    pixels.push_back(read_channels(headers.files[std::size_t(file)], channels_to_read(headers, needs, file), workers));
+    pixels.push_back(read_flat(headers.files[std::size_t(file)], channels_to_read(headers, needs, file),
+                               file == 0 ? colors : std::vector<ChannelRef>(), {}, deep, workers));
   return pixels;
 }
 

@@ -9,6 +9,7 @@
 #include "motion/motion.h"
 #include "plan/probe.h"
 #include "resolve/present.h"
+#include "stages/flatten_deep.h"
 
 namespace varve {
 
@@ -24,8 +25,9 @@ struct ChannelNeeds {
   bool id = false, normal = false, reactive = false, responsive = false;
 };
 
-/// Reads what a frame needs, each channel once. Throws what read_channels throws.
-FileSet read_files(const FrameHeaders& headers, const ChannelNeeds& needs, Workers& workers);
+/// Reads what a frame needs, each channel once; deep parts are flattened, colors of subjects as float, and counted in
+/// `deep`. Throws what read_channels and read_deep throw.
+FileSet read_files(const FrameHeaders& headers, const ChannelNeeds& needs, DeepCounts& deep, Workers& workers);
 
 struct ReadOptions {
   MotionParameters motion;

@@ -19,7 +19,7 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, Workers& 
                        .normal = plan.use_normal,
                        .reactive = plan.use_reactive,
                        .responsive = plan.use_responsive},
-                      workers);
+                      source.deep, workers);
   });
   const ReadOptions read{.motion = options.job.parameters.motion,
                          .use_depth = plan.use_depth,

@@ -16,6 +16,7 @@ struct SourceFrame {
   FileSet pixels;                 ///< as stored; empty where the frame is read again when it is written
   std::vector<Present> presents;  ///< one for each of headers.subjects
   std::size_t vectors_bad = 0;    ///< vectors that cannot be used
+  DeepCounts deep;                ///< samples of deep parts that were flattened
 };
 
 /// Names the frame in what a stage has to say: file names alone need not tell it.

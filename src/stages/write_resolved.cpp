@@ -146,11 +146,13 @@ std::set<std::string> stale_diagnostics(const Subject& subject) {
   return names;
 }
 
-/// The part's other channels as they were, unless one of that name is written already or is out of date.
+/// The part's other channels as they were, unless one of that name is written already or is out of date, or means
+/// nothing now that a deep part is flat.
 void add_kept(OutputPart& to, const Part& part, const std::vector<RawPlane>& pixels, std::set<std::string> taken) {
   for (const OutputChannel& channel : to.channels) taken.insert(channel.channel.name);
   for (std::size_t c = 0; c < part.channels.size(); ++c)
-    if (!taken.contains(part.channels[c].name)) to.channels.push_back({part.channels[c], &pixels[c]});
+    if (!taken.contains(part.channels[c].name) && !(is_deep(part) && pixels[c].empty()))
+      to.channels.push_back({part.channels[c], &pixels[c]});
 }
 
 }  // namespace
