@@ -1,6 +1,7 @@
 // THE table of options. Names, ranges and texts of the parameters come from knobs().
 #include "compare_options.h"
 #include "jitter_options.h"
+#include "layer_options.h"
 #include "measure_options.h"
 #include "option_values.h"
 #include "synth_options.h"
@@ -299,6 +300,7 @@ std::vector<Option> option_table() {
   add_synth_options(rows);
   add_jitter_options(rows);
   add_channel_options(rows);
+  add_layer_options(rows);
   add_parameter_options(rows);
   add_motion_options(rows);
   add_diagnostic_options(rows);

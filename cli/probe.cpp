@@ -5,15 +5,18 @@
 #include "base/error.h"
 #include "commands.h"
 #include "plan/describe.h"
+#include "stages/order_layers.h"
 
 namespace varve::cli {
 
 int run_probe(Settings& settings) {
   finish_job(settings);
-  const ResolveJob& job = settings.job;
+  const OrderedLayers ordered = order_layers(settings.job);
+  const ResolveJob& job = ordered.job;
   const JitterSource jitter = parse_jitter_source(job.jitter);
   const SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
-  const Plan plan = make_plan(info, job.parameters, job.request, job.threads);
+  Plan plan = make_plan(info, job.parameters, job.request, job.threads);
+  if (!ordered.note.empty()) plan.notes.push_back(ordered.note);
   std::vector<ChannelStatistics> statistics;
   if (settings.pixels > 0) {
     Workers workers(job.threads);

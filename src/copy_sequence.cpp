@@ -37,7 +37,7 @@ void copy_sequence(const ResolveJob& job) {
   Workers workers(job.threads);
   for (int frame : info.frames) {
     const FrameHeaders headers = read_frame_headers(job.input, frame, job.roles, jitter);
-    DeepCounts deep;  // read as the resolve reads them, and copied as they are
+    DeepFrame deep;  // read as the resolve reads them, and copied as they are
     const FileSet files = read_files(headers, {true, true, true}, deep, workers);
     write_frame(job.output.path(frame), headers.files.front(), parts_of(headers, files.front()), {job.zip_level, {}},
                 workers);

@@ -10,7 +10,7 @@ double luminance(double r, double g, double b) { return 0.2126 * r + 0.7152 * g 
 
 }  // namespace
 
-FlatPixel flatten(std::vector<DeepSample>& samples, bool colored, DeepWinner rule, FlattenScratch& scratch) {
+FlatPixel flatten(std::vector<DeepSample>& samples, bool colored, LayerRule rule, FlattenScratch& scratch) {
   if (!std::is_sorted(samples.begin(), samples.end(), is_before)) std::sort(samples.begin(), samples.end(), is_before);
   lay_out(samples, scratch.layout);
   const std::size_t count = samples.size();
@@ -37,11 +37,12 @@ FlatPixel flatten(std::vector<DeepSample>& samples, bool colored, DeepWinner rul
     }
     flat.color += light;
     const double variation = colored ? luminance(change[0], change[1], change[2]) : change[3];
-    const double rank = rule == DeepWinner::variation ? variation : luminance(light[0], light[1], light[2]);
+    const double rank = rule == LayerRule::variation ? variation : luminance(light[0], light[1], light[2]);
     flat.seen += change != glm::dvec4(0.0) || light != glm::dvec4(0.0);
     if (rank > best) {
       best = rank;
       flat.winner = s.index;
+      flat.place = i;
       flat.variation = variation;
     }
   }

@@ -7,17 +7,15 @@
 
 #include <glm/vec4.hpp>
 
+#include "base/combine_request.h"
 #include "deep/visibility.h"
 
 namespace varve {
 
-/// Whose motion, depth and id a flattened pixel has: those of the sample across which transmittance changes most, or of
-/// the one that adds most light.
-enum class DeepWinner { variation, contribution };
-
 struct FlatPixel {
   glm::dvec4 color{0.0};   ///< premultiplied; alpha is the sum of the changes of transmittance
   std::size_t winner = 0;  ///< DeepSample::index
+  std::size_t place = 0;   ///< of the winner, front to back; 0 and up
   double variation = 0;    ///< change of transmittance across the winner, 0..1; RGB by luminance
   std::size_t seen = 0;    ///< samples that change transmittance or add light
 };
@@ -31,9 +29,10 @@ struct FlattenScratch {
 };
 
 /// Sorts the samples (repaired, at least one) and flattens them. `colored`: the opacities of R, G, B and A differ; if
-/// not, that of A counts for all. The winner is a whole sample, whatever pieces others cut it into; ties go to the
+/// not, that of A counts for all. The winner lends the pixel its motion, depth and id. It is a whole sample, whatever
+/// pieces others cut it into; ties go to the
 /// front. Hidden samples have no say, NaN colors included. What is behind the last sample is no rival: there is nothing
 /// there that could move.
-FlatPixel flatten(std::vector<DeepSample>& samples, bool colored, DeepWinner rule, FlattenScratch& scratch);
+FlatPixel flatten(std::vector<DeepSample>& samples, bool colored, LayerRule rule, FlattenScratch& scratch);
 
 }  // namespace varve

@@ -42,8 +42,9 @@ void store_floats(PixelType type, const float* from, std::byte* to, std::size_t 
 /// Flattens the lines of one part.
 class Flattener {
  public:
-  Flattener(const Part& part, std::vector<Lane> lanes, DeepWinner rule)
-      : part_(part), channels_(deep_channels(part)), lanes_(std::move(lanes)), rule_(rule) {
+  /// `shown` may be null.
+  Flattener(const Part& part, std::vector<Lane> lanes, LayerRule rule, CombinePlanes* shown)
+      : part_(part), channels_(deep_channels(part)), lanes_(std::move(lanes)), rule_(rule), shown_(shown) {
     // The color that the winner is chosen by, and that tells coinciding samples apart.
     for (std::size_t i = 0; i < lanes_.size(); ++i)
       if (const DeepUse use = lanes_[i].use; use.role == DeepRole::light && use.lane < 3 && !color_[use.lane])
@@ -105,6 +106,11 @@ class Flattener {
       if (DeepSample one = sample(s, first, i); repair(one, s.counts.defects)) s.pixel.push_back(one);
     if (s.pixel.empty()) return leave_empty(line, x);
     const FlatPixel flat = flatten(s.pixel, channels_.colored, rule_, s.flatten);
+    if (shown_) {
+      shown_->winner.at(line.x0 + int(x), line.y) = float(flat.place + 1);
+      shown_->variation.at(line.x0 + int(x), line.y) = float(flat.variation);
+      shown_->touched.at(line.x0 + int(x), line.y) = float(flat.seen);
+    }
     for (std::size_t i = 0; i < lanes_.size(); ++i) {
       const DeepUse use = lanes_[i].use;
       if (use.role == DeepRole::winner) {
@@ -153,12 +159,13 @@ class Flattener {
   DeepChannels channels_;
   std::vector<Lane> lanes_;
   std::array<std::optional<std::size_t>, 3> color_;  ///< lanes of R, G and B
-  DeepWinner rule_;
+  LayerRule rule_;
+  CombinePlanes* shown_;
 };
 
 void flatten_part(const FileHeader& header, int part, std::span<const ChannelRef> channels,
                   std::span<const ChannelRef> precise, const FlattenOptions& options, std::vector<RawPlane>& planes,
-                  DeepCounts& counts, Workers& workers) {
+                  DeepFrame& deep, Workers& workers) {
   const Part& described = header.parts[std::size_t(part)];
   std::vector<Lane> lanes;
   for (const ChannelRef& ref : channels) {
@@ -173,11 +180,15 @@ void flatten_part(const FileHeader& header, int part, std::span<const ChannelRef
     lanes.push_back({ref.channel, use, &plane});
   }
   if (lanes.empty()) return;
-  const Flattener flattener(described, std::move(lanes), options.rule);
+  CombinePlanes* shown = options.show ? &deep.combined[part] : nullptr;
+  if (shown)
+    for (Plane<float>* plane : {&shown->winner, &shown->variation, &shown->touched})
+      *plane = Plane<float>(described.data_window, 0, 0.0f);
+  const Flattener flattener(described, std::move(lanes), options.rule, shown);
   std::vector<Scratch> scratch(std::size_t(workers.count()));
   read_deep(header, part, options.limits, workers,
             [&](const DeepLine& line, int worker) { flattener.take(line, scratch[std::size_t(worker)]); });
-  for (const Scratch& s : scratch) counts += s.counts;
+  for (const Scratch& s : scratch) deep.counts += s.counts;
 }
 
 }  // namespace
@@ -191,17 +202,17 @@ DeepCounts& DeepCounts::operator+=(const DeepCounts& other) {
 }
 
 FramePixels read_flat(const FileHeader& header, std::span<const ChannelRef> channels,
-                      std::span<const ChannelRef> precise, const FlattenOptions& options, DeepCounts& counts,
+                      std::span<const ChannelRef> precise, const FlattenOptions& options, DeepFrame& deep,
                       Workers& workers) {
   std::vector<ChannelRef> flat;
-  std::vector<char> deep(header.parts.size(), 0);
+  std::vector<char> is_flattened(header.parts.size(), 0);
   for (const ChannelRef& ref : channels) {
-    deep[std::size_t(ref.part)] = is_deep(header.parts.at(std::size_t(ref.part)));
-    if (!deep[std::size_t(ref.part)]) flat.push_back(ref);
+    is_flattened[std::size_t(ref.part)] = is_deep(header.parts.at(std::size_t(ref.part)));
+    if (!is_flattened[std::size_t(ref.part)]) flat.push_back(ref);
   }
   FramePixels pixels = read_channels(header, flat, workers);
-  for (std::size_t p = 0; p < deep.size(); ++p)
-    if (deep[p]) flatten_part(header, int(p), channels, precise, options, pixels.planes[p], counts, workers);
+  for (std::size_t p = 0; p < is_flattened.size(); ++p)
+    if (is_flattened[p]) flatten_part(header, int(p), channels, precise, options, pixels.planes[p], deep, workers);
   return pixels;
 }
 

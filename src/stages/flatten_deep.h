@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
 #include "deep/flatten.h"
 #include "exr/read_deep.h"
 #include "exr/read_frame.h"
+#include "resolve/present.h"
 
 namespace varve {
 
@@ -20,16 +22,23 @@ struct DeepCounts {
 };
 
 struct FlattenOptions {
-  DeepWinner rule = DeepWinner::variation;
+  LayerRule rule = LayerRule::variation;
+  bool show = false;  ///< DeepFrame::combined is wanted
   DeepLimits limits;
+};
+
+/// What is known of the deep parts of a frame besides their flat pixels.
+struct DeepFrame {
+  DeepCounts counts;
+  std::map<int, CombinePlanes> combined;  ///< by part: which sample won, counted from the front, and by how much
 };
 
 /// Reads the chosen channels of one file as read_channels does, deep ones flattened over their data window. Those in
 /// `precise` come as float whatever their type; the others keep it. Light is composited, of alpha there is what all
 /// samples hide; every other channel has the value of the sample that the pixel follows, and 0, or background where it
-/// is a depth, where there is none. ZBack comes out empty. `counts` is added to.
+/// is a depth, where there is none. ZBack comes out empty. `deep` is added to.
 FramePixels read_flat(const FileHeader& header, std::span<const ChannelRef> channels,
-                      std::span<const ChannelRef> precise, const FlattenOptions& options, DeepCounts& counts,
+                      std::span<const ChannelRef> precise, const FlattenOptions& options, DeepFrame& deep,
                       Workers& workers);
 
 }  // namespace varve

@@ -1,6 +1,9 @@
 #include "stages/source_frame.h"
 
+#include <utility>
+
 #include "stages/check_same_subjects.h"
+#include "stages/combine_presents.h"
 
 namespace varve {
 
@@ -9,6 +12,7 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, Workers& 
   SourceFrame source;
   source.headers = read_frame_headers(options.job.input, frame, options.job.roles, options.jitter);
   check_same_subjects(options.info.first, source.headers, plan);
+  DeepFrame deep;
   source.pixels = in_frame(frame, [&] {
     return read_files(source.headers,
                       {.depth = plan.use_depth,
@@ -18,8 +22,10 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, Workers& 
                        .id = plan.use_id,
                        .normal = plan.use_normal,
                        .reactive = plan.use_reactive,
-                       .responsive = plan.use_responsive},
-                      source.deep, workers);
+                       .responsive = plan.use_responsive,
+                       .rule = options.job.roles.combine_layers.rule,
+                       .show_combined = options.show_combined},
+                      deep, workers);
   });
   const ReadOptions read{.motion = options.job.parameters.motion,
                          .use_depth = plan.use_depth,
@@ -29,12 +35,22 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, Workers& 
                          .use_normal = plan.use_normal,
                          .use_reactive = plan.use_reactive,
                          .use_responsive = plan.use_responsive};
+  source.deep = deep.counts;
+  std::vector<Present> presents;
   for (const Subject& subject : source.headers.subjects) {
     const Part& part = source.headers.files.front().parts[std::size_t(part_of(subject))];
-    source.presents.push_back(read_present(subject, source.pixels, part.data_window, part.display_window, read,
-                                           options.into_working_space, source.vectors_bad, workers));
-    if (const auto& jitter = source.headers.jitter) source.presents.back().jitter = glm::dvec2(jitter->x, jitter->y);
+    presents.push_back(read_present(subject, source.pixels, part.data_window, part.display_window, read,
+                                    options.into_working_space, source.vectors_bad, workers));
+    if (const auto& jitter = source.headers.jitter) presents.back().jitter = glm::dvec2(jitter->x, jitter->y);
+    if (const auto shown = deep.combined.find(part_of(subject)); shown != deep.combined.end()) {
+      CombinePlanes& combined = presents.back().combined;
+      combined.winner = shown->second.winner.clone();
+      combined.variation = shown->second.variation.clone();
+      combined.touched = shown->second.touched.clone();
+    }
   }
+  source.presents =
+      combine_presents(source.headers, std::move(presents), {options.job.roles, options.show_combined}, workers);
   if (!options.keep_pixels) source.pixels.clear();
   return source;
 }

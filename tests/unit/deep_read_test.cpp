@@ -13,6 +13,7 @@
 
 #include "exr/convert.h"
 #include "exr_test_files.h"
+#include "paths.h"
 #include "stages/flatten_deep.h"
 #include "support/deep_file.h"
 
@@ -98,8 +99,8 @@ bool use(const std::string& path, Workers& workers) {
     std::vector<ChannelRef> channels;
     for (std::size_t p = 0; p < header.parts.size(); ++p)
       for (std::size_t c = 0; c < header.parts[p].channels.size(); ++c) channels.push_back({0, int(p), int(c)});
-    DeepCounts counts;
-    read_flat(header, channels, {}, {}, counts, workers);
+    DeepFrame deep;
+    read_flat(header, channels, {}, {}, deep, workers);
     return true;
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ExitCode::input) << failure.what();
@@ -205,8 +206,8 @@ TEST(FlattenDeep, SameBytesForAnyThreadsAndBands) {
       Workers workers(threads);
       FlattenOptions options;
       options.limits.band_bytes = band;
-      DeepCounts counts;
-      const FramePixels frame = read_flat(header, channels, std::vector{channels[1]}, options, counts, workers);
+      DeepFrame deep;
+      const FramePixels frame = read_flat(header, channels, std::vector{channels[1]}, options, deep, workers);
       EXPECT_EQ(frame.planes[0][1].type, PixelType::float32);  // R is wanted precisely, A as it is stored
       EXPECT_EQ(frame.planes[0][0].type, PixelType::float16);
       EXPECT_TRUE(frame.planes[0][3].empty());  // ZBack
@@ -214,7 +215,7 @@ TEST(FlattenDeep, SameBytesForAnyThreadsAndBands) {
       for (const int c : {0, 1, 2, 4}) bytes.push_back(packed(frame.planes[0][std::size_t(c)]));
       if (first.empty()) first = bytes;
       EXPECT_TRUE(bytes == first);
-      EXPECT_EQ(counts.pixels, 91u);
+      EXPECT_EQ(deep.counts.pixels, 91u);
     }
 }
 
@@ -231,8 +232,8 @@ TEST(FlattenDeep, WinnersLendWhatCannotBeAveraged) {
   const FileHeader header = read_header(folder / "in.exr");
   std::vector<ChannelRef> channels;
   for (int c = 0; c < 5; ++c) channels.push_back({0, 0, c});
-  DeepCounts counts;
-  const FramePixels frame = read_flat(header, channels, {}, {}, counts, workers);
+  DeepFrame deep;
+  const FramePixels frame = read_flat(header, channels, {}, {}, deep, workers);
   const auto values = [&](std::size_t c) {
     std::vector<float> row(3);
     to_float(frame.planes[0][c].type, frame.planes[0][c].row(0), row.data(), 3);
@@ -246,9 +247,9 @@ TEST(FlattenDeep, WinnersLendWhatCannotBeAveraged) {
   EXPECT_EQ(ids[0], 4000000001u);
   EXPECT_EQ(ids[1], 0u);
   EXPECT_EQ(values(4), (std::vector<float>{-3, 0, 0.1f}));
-  EXPECT_EQ(counts.samples, 4u);
-  EXPECT_EQ(counts.most, 2u);
-  EXPECT_EQ(counts.defects.dropped, 1u);
+  EXPECT_EQ(deep.counts.samples, 4u);
+  EXPECT_EQ(deep.counts.most, 2u);
+  EXPECT_EQ(deep.counts.defects.dropped, 1u);
 }
 
 struct Picture {
@@ -287,8 +288,8 @@ TEST(RealDeep, FlattensLikeTheLibraryWherePointsDoNotCoincide) {
     const Part& part = header.parts[0];
     std::vector<ChannelRef> channels;
     for (const char* channel : {"R", "G", "B", "A"}) channels.push_back({0, 0, *part.channel(channel)});
-    DeepCounts counts;
-    const FramePixels frame = read_flat(header, channels, channels, {}, counts, workers);
+    DeepFrame deep;
+    const FramePixels frame = read_flat(header, channels, channels, {}, deep, workers);
     const Window& w = part.data_window;
     const Picture theirs = flatten_by_library({path}, {{w.x0, w.y0}, {w.x1 - 1, w.y1 - 1}});
     double worst = 0;

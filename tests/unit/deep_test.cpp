@@ -25,7 +25,7 @@ DeepSample sample_of(const Piece& piece, std::size_t index = 0) {
 }
 
 FlatPixel flatten_pieces(const std::vector<Piece>& pieces, FlattenScratch& scratch,
-                         DeepWinner rule = DeepWinner::variation) {
+                         LayerRule rule = LayerRule::variation) {
   std::vector<DeepSample> samples;
   for (std::size_t i = 0; i < pieces.size(); ++i) samples.push_back(sample_of(pieces[i], i));
   return flatten(samples, false, rule, scratch);
@@ -128,8 +128,8 @@ TEST(DeepFlatten, OrderOfSamplesDoesNotMatter) {
     for (const Piece& piece : random_pixel(random, 9, true)) samples.push_back(sample_of(piece, samples.size()));
     std::vector<DeepSample> shuffled = samples;
     std::shuffle(shuffled.begin(), shuffled.end(), random);
-    const FlatPixel a = flatten(samples, false, DeepWinner::variation, scratch);
-    const FlatPixel b = flatten(shuffled, false, DeepWinner::variation, scratch);
+    const FlatPixel a = flatten(samples, false, LayerRule::variation, scratch);
+    const FlatPixel b = flatten(shuffled, false, LayerRule::variation, scratch);
     EXPECT_EQ(a.color, b.color);
     EXPECT_EQ(a.winner, b.winner);
   }
@@ -182,7 +182,7 @@ TEST(DeepFlatten, TiesGoToTheFrontAndLightHasItsOwnRule) {
   EXPECT_EQ(flatten_pieces({{5, 5, 1, 0, {}}, {2, 2, 0.5, 0, {}}}, scratch).winner, 1u);
   const std::vector<Piece> flame = {{3, 3, 0.9, 0.1, {}}, {2, 2, 0, 4, {}}};
   EXPECT_EQ(flatten_pieces(flame, scratch).winner, 0u);
-  EXPECT_EQ(flatten_pieces(flame, scratch, DeepWinner::contribution).winner, 1u);
+  EXPECT_EQ(flatten_pieces(flame, scratch, LayerRule::contribution).winner, 1u);
   // Three thin slices of one thing against one sample: each slice is a sample of its own.
   EXPECT_EQ(flatten_pieces({{4, 4, 1, 0, {}}, {1, 1, 0.2, 0, {}}, {2, 2, 0.2, 0, {}}}, scratch).winner, 0u);
 }
@@ -198,7 +198,7 @@ TEST(DeepFlatten, ColoredOpacityIsPerChannel) {
   behind.index = 1;
   std::vector<DeepSample> samples = {behind, front};
   FlattenScratch scratch;
-  const FlatPixel flat = flatten(samples, true, DeepWinner::variation, scratch);
+  const FlatPixel flat = flatten(samples, true, LayerRule::variation, scratch);
   EXPECT_EQ(flat.color, glm::dvec4(0, 0.5, 1, 1));
   EXPECT_EQ(flat.winner, 0u);  // .2126 + .3576 against .3576 + .0722
 }
