@@ -88,7 +88,7 @@ void find_marks(const ChannelIndex& index, const ChannelGroup& color, bool main_
                 Subject& subject);
 
 /// Says what is made of a subject's color that is deep, and what background is when it is flat (deep_channels.cpp).
-void describe_deep(const ChannelIndex& index, const ChannelGroup& color, Subject& subject);
+void describe_deep(const ChannelIndex& index, const ChannelGroup& color, LayerRule rule, Subject& subject);
 
 /// Finds what a layer lets through (find_transmittance.cpp), where layers are to be combined. Throws
 /// Failure(inconsistent) when channels are asked for and the layer has none.

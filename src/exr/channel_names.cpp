@@ -324,7 +324,7 @@ std::vector<Subject> find_subjects(std::span<const FileHeader> files, const Role
     find_depth(index, color.color, request, subject);
     find_motion(index, *color.color.group, color.color.rank <= 1, request, subject);
     find_marks(index, *color.color.group, color.color.rank <= 1, request, subject);
-    if (color.color.group->deep) describe_deep(index, *color.color.group, subject);
+    if (color.color.group->deep) describe_deep(index, *color.color.group, request.combine_layers.rule, subject);
     find_transmittance(index, *color.color.group, request.combine_layers, subject);
     subjects.push_back(std::move(subject));
   }

@@ -54,19 +54,20 @@ DeepUse deep_use(const Part& part, int channel) {
   }
 }
 
-void describe_deep(const ChannelIndex& index, const ChannelGroup& color, Subject& subject) {
+void describe_deep(const ChannelIndex& index, const ChannelGroup& color, LayerRule rule, Subject& subject) {
   const FileHeader& file = index.files[std::size_t(color.file)];
   const Part& part = file.parts[std::size_t(color.part)];
   const DeepChannels channels = deep_channels(part);
   const std::string where =
       file.parts.size() < 2 || part.name.empty() ? "the file is deep" : "part " + part.name + " is deep";
   const bool coverage = channels.opacity[3] || channels.colored;
-  subject.notes.push_back("color: " + where + "; its samples are put in order by " +
-                          (channels.z ? channels.z_back ? "Z and ZBack, volumes split where they overlap, " : "Z, "
-                                      : "their places in the file, for there is no Z, ") +
-                          "and flattened" +
-                          (coverage ? "" : "; there is no alpha, so the nearest one hides all others") +
-                          "; motion, depth and ids are those of the sample across which transmittance changes most");
+  subject.notes.push_back(
+      "color: " + where + "; its samples are put in order by " +
+      (channels.z ? channels.z_back ? "Z and ZBack, volumes split where they overlap, " : "Z, "
+                  : "their places in the file, for there is no Z, ") +
+      "and flattened" + (coverage ? "" : "; there is no alpha, so the nearest one hides all others") +
+      "; motion, depth and ids are those of the sample " +
+      (rule == LayerRule::variation ? "across which transmittance changes most" : "that adds most light"));
   if (subject.depth &&
       index.files[std::size_t(subject.depth->file)].parts[std::size_t(subject.depth->part)].name == part.name)
     subject.background_depth = double(deep_background(index.channel(*subject.depth).type));

@@ -39,6 +39,11 @@ std::optional<PlannedPass> flatten_pass(const SequenceInfo& info) {
                          " and composited front to back; the rest sees a flat picture"};
 }
 
+std::string deep_text(const LayersRequest& request, const SequenceInfo& info) {
+  if (deep_colors(info).empty()) return "";
+  return request.rule == LayerRule::variation ? " deep-rule=variation" : " deep-rule=contribution";
+}
+
 std::size_t deep_bytes(const SequenceInfo& info) {
   // Deflate gains about a factor of two on samples; a chunk at work takes three times its unpacked size.
   return std::size_t(std::min(double(DeepLimits{}.band_bytes), 6 * packed_bytes(info)));

@@ -78,29 +78,33 @@ void measure_deep(const FileHeader& file, int part, const std::vector<RoleChanne
   for (const RoleChannel& channel : channels)
     if (channel.ref.part == part) here.push_back(channel);
   if (here.empty()) return;
-  std::vector<ChannelStatistics> found(here.size() + 1);
-  std::vector<Measurement> measurements;
-  for (ChannelStatistics& statistics : found) {
+  const auto row = [&](const std::string& channel, const std::string& role) {
+    ChannelStatistics statistics;
     statistics.frame = frame;
     statistics.part = described.name;
-    measurements.push_back({statistics, {}});
-  }
-  found.back().channel = "samples per pixel";
-  found.back().role = "deep";
-  for (std::size_t i = 0; i < here.size(); ++i) {
-    found[i].channel = described.channels[std::size_t(here[i].ref.channel)].name;
-    found[i].role = here[i].role;
-  }
+    statistics.channel = channel;
+    statistics.role = role;
+    return statistics;
+  };
+  std::vector<ChannelStatistics> found;
+  for (const RoleChannel& channel : here)
+    found.push_back(row(described.channels[std::size_t(channel.ref.channel)].name, channel.role));
+  std::vector<Measurement> measurements;
+  for (ChannelStatistics& statistics : found) measurements.push_back({statistics, {}});
+  ChannelStatistics counts = row("samples per pixel", "deep");
+  Measurement counted{counts, {}};
   Workers one(1);
   read_deep(file, part, {}, one, [&](const DeepLine& line, int) {
     for (std::size_t i = 0; i < here.size(); ++i) {
       const std::size_t c = std::size_t(here[i].ref.channel);
       measurements[i].add(described.channels[c].type, line.samples[c], line.count());
     }
-    for (std::size_t x = 0; x < line.pixels(); ++x) measurements.back().add(float(line.first[x + 1] - line.first[x]));
+    for (std::size_t x = 0; x < line.pixels(); ++x) counted.add(float(line.first[x + 1] - line.first[x]));
   });
   for (Measurement& measurement : measurements) measurement.finish();
+  counted.finish();
   all.insert(all.end(), found.begin(), found.end());
+  all.push_back(counts);
 }
 
 // `count` frames spread evenly from the first to the last.

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/version.h"
 #include "exr/write_frame.h"
+#include "plan/deep_plan.h"
 #include "plan/layers_plan.h"
 #include "plan/preset.h"
 
@@ -157,7 +158,7 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   if (job.find_cuts) text += " find-cuts=on";
   text += " jitter=" + describe_jitter(job.jitter) + " convention=" + job.roles.convention;
   for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
-  text += layers_text(job.roles.combine_layers, info);
+  text += layers_text(job.roles.combine_layers, info) + deep_text(job.roles.combine_layers, info);
   for (const std::string& channels : job.roles.channels) text += " channels=" + channels;
   if (!job.roles.channels.empty())
     text += std::string(" channel-weights=") + (job.roles.channel_weights == ChannelWeights::own ? "own" : "beauty");
