@@ -268,6 +268,10 @@ void add_run_options(std::vector<Option>& rows) {
        "Read the pixels of this many frames, spread over the sequence, and print the range of each channel. 0 reads "
        "headers only.",
        number([](auto& s) -> auto& { return s.pixels; }, {0, 1000000})});
+  add({"motion", 0, "", kProbe, kBasic, group,
+       "Hold the motion vectors against the pixels of frames spread over the sequence: which reading of them agrees "
+       "(direction, axes, unit, bias, scale, jitter), what speaks for it, and what is wrong with them.",
+       flag([](auto& s) -> auto& { return s.motion; })});
   add({"json", 0, "", kProbe, kBasic, group, "Print JSON.", flag([](auto& s) -> auto& { return s.json; })});
   add({"dry-run", 'n', "", kResolve, kBasic, group, "Check the input, print the plan and write nothing.",
        flag([](auto& s) -> auto& { return s.dry_run; })});

@@ -1,17 +1,33 @@
 // varve probe.
 #include <cstdio>
+#include <optional>
 #include <vector>
 
 #include "base/error.h"
 #include "commands.h"
 #include "plan/describe.h"
 #include "stages/order_layers.h"
+#include "stages/probe_motion.h"
 
 namespace varve::cli {
 
+namespace {
+
+// Vectors that nobody told the convention of stop a probe by headers; where the pixels are asked, they need not.
+ResolveJob readable(const ResolveJob& job, bool asks_pixels) {
+  ResolveJob read = job;
+  if (!asks_pixels) return read;
+  const std::vector<int> frames = job.frames.empty() ? job.input.color.frames_on_disk() : job.frames;
+  if (!frames.empty() && !told_by_names(job, frames.front(), parse_jitter_source(job.jitter)))
+    read.roles = without_vectors(job.roles);
+  return read;
+}
+
+}  // namespace
+
 int run_probe(Settings& settings) {
   finish_job(settings);
-  const OrderedLayers ordered = order_layers(settings.job);
+  const OrderedLayers ordered = order_layers(readable(settings.job, settings.motion));
   const ResolveJob& job = ordered.job;
   const JitterSource jitter = parse_jitter_source(job.jitter);
   const SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
@@ -22,8 +38,13 @@ int run_probe(Settings& settings) {
     Workers workers(job.threads);
     statistics = measure_pixels(info, job.input, job.roles, jitter, settings.pixels, workers);
   }
-  const std::string text =
-      settings.json ? describe_json(info, plan, statistics) : describe_text(info, plan, statistics);
+  std::optional<MotionReport> motion;
+  if (settings.motion) {
+    Workers workers(job.threads);
+    motion = probe_motion(settings.job, info.frames, {}, workers);
+  }
+  const std::string text = settings.json ? describe_json(info, plan, statistics, motion ? motion_json(*motion) : "")
+                                         : describe_text(info, plan, statistics) + (motion ? motion_text(*motion) : "");
   std::fputs(text.c_str(), stdout);
   if (!text.ends_with('\n')) std::fputc('\n', stdout);
   return int(ExitCode::done);
