@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "exr/convert.h"
+#include "stages/flatten_deep.h"
 
 namespace varve {
 namespace {
@@ -21,11 +22,13 @@ Plane<float> plane_of(const RawPlane& raw, Workers& workers) {
 
 FileSet read_refs(const FrameHeaders& headers, const std::vector<ChannelRef>& refs, Workers& workers) {
   FileSet files;
+  DeepFrame untold;
   for (int file = 0; file < int(headers.files.size()); ++file) {
     std::vector<ChannelRef> here;
     for (const ChannelRef& ref : refs)
       if (ref.file == file && std::find(here.begin(), here.end(), ref) == here.end()) here.push_back(ref);
-    files.push_back(here.empty() ? FramePixels{} : read_channels(headers.files[std::size_t(file)], here, workers));
+    files.push_back(here.empty() ? FramePixels{}
+                                 : read_flat(headers.files[std::size_t(file)], here, here, {}, untold, workers));
   }
   return files;
 }
