@@ -305,5 +305,66 @@ TEST(RealDeep, FlattensLikeTheLibraryWherePointsDoNotCoincide) {
   }
 }
 
+/// Adds the samples of a file to the pixels of `window`.
+void gather_samples(const std::string& path, const Window& window, std::vector<std::vector<DeepSample>>& pixels,
+                    Workers& workers) {
+  const FileHeader header = read_header(path);
+  const Part& part = header.parts[0];
+  std::vector<std::size_t> places;
+  for (const char* name : {"R", "G", "B", "A", "Z"}) places.push_back(std::size_t(*part.channel(name)));
+  read_deep(header, 0, {}, workers, [&](const DeepLine& line, int) {
+    std::vector<std::vector<float>> values;
+    for (const std::size_t c : places) {
+      values.emplace_back(line.count());
+      to_float(part.channels[c].type, line.samples[c], values.back().data(), line.count());
+    }
+    for (std::size_t x = 0; x < line.pixels(); ++x)
+      for (std::size_t s = line.first[x]; s < line.first[x + 1]; ++s) {
+        std::vector<DeepSample>& pixel = pixels[std::size_t(line.y - window.y0) * std::size_t(window.width()) +
+                                                std::size_t(line.x0 - window.x0) + x];
+        DeepSample sample;
+        sample.index = std::uint32_t(pixel.size());
+        sample.front = sample.back = double(values[4][s]);
+        sample.opacity = glm::dvec4(double(values[3][s]));
+        sample.color = glm::dvec4(double(values[0][s]), double(values[1][s]), double(values[2][s]), 0);
+        pixel.push_back(sample);
+      }
+  });
+}
+
+TEST(RealDeep, ThreeElementsMergedGiveTheFlatPictureWhereNoFourthOneLies) {
+  const std::string folder = std::string(VARVE_DATA) + "/deep/";
+  if (!std::filesystem::exists(folder + "composited.exr")) GTEST_SKIP() << "no " << folder;
+  Workers workers;
+  const Window window{0, 0, 1024, 576};
+  std::vector<std::vector<DeepSample>> pixels(window.pixels());
+  for (const char* name : {"Balls", "Leaves", "Trunks"})
+    gather_samples(folder + name + ".exr", window, pixels, workers);
+  const FileHeader flat = read_header(folder + "composited.exr");
+  const Part& part = flat.parts[0];
+  std::vector<ChannelRef> channels;
+  for (const char* name : {"R", "G", "B", "A"}) channels.push_back({0, 0, *part.channel(name)});
+  const FramePixels theirs = read_channels(flat, channels, workers);
+  FlattenScratch scratch;
+  std::size_t equal = 0;
+  const Window& w = part.data_window;
+  std::vector<std::vector<float>> rows(4, std::vector<float>(std::size_t(w.width())));
+  for (int y = w.y0; y < w.y1; ++y) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      const RawPlane& plane = theirs[channels[k]];
+      to_float(plane.type, plane.row(y - w.y0), rows[k].data(), rows[k].size());
+    }
+    for (int x = w.x0; x < w.x1; ++x) {
+      std::vector<DeepSample>& samples = pixels[std::size_t(y) * 1024 + std::size_t(x)];
+      const FlatPixel pixel = samples.empty() ? FlatPixel() : flatten(samples, false, LayerRule::variation, scratch);
+      double worst = 0;
+      for (int k = 0; k < 4; ++k)
+        worst = std::max(worst, std::abs(pixel.color[k] - double(rows[std::size_t(k)][std::size_t(x - w.x0)])));
+      equal += worst <= 1e-6;
+    }
+  }
+  EXPECT_NEAR(double(equal) / double(w.pixels()), 0.765, 0.001);
+}
+
 }  // namespace
 }  // namespace varve::test
