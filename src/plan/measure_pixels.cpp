@@ -6,6 +6,7 @@
 #include "exr/convert.h"
 #include "exr/read_deep.h"
 #include "exr/read_frame.h"
+#include "plan/find_samples.h"
 #include "plan/probe.h"
 
 namespace varve {
@@ -141,7 +142,7 @@ std::vector<ChannelStatistics> measure_pixels(const SequenceInfo& info, const In
       for (int part = 0; !deep.empty() && part < int(file.parts.size()); ++part)
         measure_deep(file, part, deep, frame, all);
       if (here.empty()) continue;
-      const FramePixels pixels = read_channels(file, refs, workers);
+      const FramePixels pixels = read_shown_channels(headers, f, refs, workers);
       std::vector<ChannelStatistics> found(here.size());
       workers.for_each(here.size(), [&](std::size_t i, int) {
         const Part& part = file.parts[std::size_t(here[i].ref.part)];

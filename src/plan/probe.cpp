@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
+#include "plan/find_samples.h"
 
 namespace varve {
 namespace {
@@ -134,6 +135,11 @@ struct Survey {
     if (matrices > 0) info.camera = "worldToCamera or worldToNDC in " + std::to_string(matrices) + of;
     if (matrices == 0 && notes > 0)
       info.camera = "view and proj in the attribute Note in " + std::to_string(notes) + of;
+    if (info.first.grid > 1) {
+      info.jitter_source = "the places of the samples in their grid" +
+                           (jitter.description.empty() ? std::string() : ", and " + jitter.description);
+      return;
+    }
     const std::string in = " in " + std::to_string(info.frames_with_jitter) + of;
     switch (jitter.kind) {
       case JitterSource::Kind::none:
@@ -181,13 +187,14 @@ void note_parts(const SequenceInfo& info, std::vector<std::string>& notes) {
   std::set<int> resolved;
   for (const Subject& subject : info.first.subjects)
     for (const int part : parts_of(subject)) resolved.insert(part);
-  for (const FileHeader& file : info.first.files)
+  for (const FileHeader& file : files_on_disk(info.first))
     for (const Part& part : file.parts) {
       const std::string where = part.name.empty() ? file.path : "part " + part.name;
-      const bool color = &file == &info.first.files.front() && resolved.contains(int(&part - file.parts.data()));
+      const bool color =
+          file.path == info.first.files.front().path && resolved.contains(int(&part - file.parts.data()));
       if (is_deep(part) && !color)
         notes.push_back(where + " is deep; it is passed through as it is" +
-                        (&file == &info.first.files.front() ? ", unless --layer names it" : ""));
+                        (file.path == info.first.files.front().path ? ", unless --layer names it" : ""));
       if (!is_lossy(part.compression) || is_deep(part)) continue;
       std::vector<std::string> data;
       for (const Channel& channel : part.channels) {
@@ -211,6 +218,10 @@ FrameHeaders read_frame_headers(const InputSequence& input, int frame, const Rol
   try {
     headers.files.push_back(read_header(input.color.path(frame)));
     for (const SequencePattern& role : input.roles) headers.files.push_back(read_header(role.path(frame)));
+    if (roles.samples.mode != SampleMode::off) {
+      find_samples(headers, roles, jitter);
+      return headers;
+    }
     headers.subjects = find_subjects(headers.files, roles);
     headers.outputs = color_outputs(headers.files, headers.subjects, roles);
     const Subject& main = headers.subjects.front();

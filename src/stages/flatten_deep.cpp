@@ -10,6 +10,7 @@
 #include "exr/channel_names.h"
 #include "exr/convert.h"
 #include "exr/deep_channels.h"
+#include "plan/find_samples.h"
 
 namespace varve {
 namespace {
@@ -201,16 +202,18 @@ DeepCounts& DeepCounts::operator+=(const DeepCounts& other) {
   return *this;
 }
 
-FramePixels read_flat(const FileHeader& header, std::span<const ChannelRef> channels,
+FramePixels read_flat(const FrameHeaders& headers, int file, std::span<const ChannelRef> channels,
                       std::span<const ChannelRef> precise, const FlattenOptions& options, DeepFrame& deep,
                       Workers& workers) {
+  const FileHeader& header = headers.files[std::size_t(file)];
   std::vector<ChannelRef> flat;
   std::vector<char> is_flattened(header.parts.size(), 0);
   for (const ChannelRef& ref : channels) {
-    is_flattened[std::size_t(ref.part)] = is_deep(header.parts.at(std::size_t(ref.part)));
+    // A grid of samples is not looked for in deep parts: reading it refuses them.
+    is_flattened[std::size_t(ref.part)] = is_deep(header.parts.at(std::size_t(ref.part))) && headers.stored.empty();
     if (!is_flattened[std::size_t(ref.part)]) flat.push_back(ref);
   }
-  FramePixels pixels = read_channels(header, flat, workers);
+  FramePixels pixels = read_shown_channels(headers, file, flat, workers);
   for (std::size_t p = 0; p < is_flattened.size(); ++p)
     if (is_flattened[p]) flatten_part(header, int(p), channels, precise, options, pixels.planes[p], deep, workers);
   return pixels;

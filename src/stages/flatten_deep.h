@@ -9,6 +9,7 @@
 #include "deep/flatten.h"
 #include "exr/read_deep.h"
 #include "exr/read_frame.h"
+#include "plan/probe.h"
 #include "resolve/present.h"
 
 namespace varve {
@@ -33,11 +34,11 @@ struct DeepFrame {
   std::map<int, CombinePlanes> combined;  ///< by part: which sample won, counted from the front, and by how much
 };
 
-/// Reads the chosen channels of one file as read_channels does, deep ones flattened over their data window. Those in
-/// `precise` come as float whatever their type; the others keep it. Light is composited, of alpha there is what all
-/// samples hide; every other channel has the value of the sample that the pixel follows, and 0, or background where it
-/// is a depth, where there is none. ZBack comes out empty. `deep` is added to.
-FramePixels read_flat(const FileHeader& header, std::span<const ChannelRef> channels,
+/// Reads the chosen channels of one file of a frame as read_shown_channels does, deep ones flattened over their data
+/// window. Those in `precise` come as float whatever their type; the others keep it. Light is composited, of alpha
+/// there is what all samples hide; every other channel has the value of the sample that the pixel follows, and 0, or
+/// background where it is a depth, where there is none. ZBack comes out empty. `deep` is added to.
+FramePixels read_flat(const FrameHeaders& headers, int file, std::span<const ChannelRef> channels,
                       std::span<const ChannelRef> precise, const FlattenOptions& options, DeepFrame& deep,
                       Workers& workers);
 

@@ -27,8 +27,7 @@ FileSet read_refs(const FrameHeaders& headers, const std::vector<ChannelRef>& re
     std::vector<ChannelRef> here;
     for (const ChannelRef& ref : refs)
       if (ref.file == file && std::find(here.begin(), here.end(), ref) == here.end()) here.push_back(ref);
-    files.push_back(here.empty() ? FramePixels{}
-                                 : read_flat(headers.files[std::size_t(file)], here, here, {}, untold, workers));
+    files.push_back(here.empty() ? FramePixels{} : read_flat(headers, file, here, here, {}, untold, workers));
   }
   return files;
 }

@@ -18,7 +18,8 @@ FrameHeaders read_side(const SequencePattern& pattern, const CompareJob& job, Ro
                        std::string& note) {
   InputSequence input{pattern, {}};
   if (motion && job.motion) input.roles.push_back(*job.motion);
-  const JitterSource none{JitterSource::Kind::none, {}, nullptr, {}, {}};
+  JitterSource none;
+  none.kind = JitterSource::Kind::none;
   const bool wants_color = std::ranges::any_of(job.channels, [](const std::string& c) { return c == "color"; });
   if (!motion) roles.convention = "none";
   try {
@@ -50,7 +51,7 @@ FileSet read_files(const FrameHeaders& headers, const std::vector<ChannelRef>& w
     std::vector<ChannelRef> here;
     for (ChannelRef ref : wanted)
       if (ref.file == f) here.push_back(ref);
-    files.push_back(read_flat(headers.files[std::size_t(f)], here, {}, {}, untold, workers));
+    files.push_back(read_flat(headers, f, here, {}, {}, untold, workers));
   }
   return files;
 }

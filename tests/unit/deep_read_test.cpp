@@ -92,6 +92,12 @@ TEST(ReadDeep, GivesWhatTheLibraryWrote) {
     }
 }
 
+FrameHeaders frame_of(const FileHeader& header) {
+  FrameHeaders headers;
+  headers.files.push_back(header);
+  return headers;
+}
+
 /// True when nothing was refused.
 bool use(const std::string& path, Workers& workers) {
   try {
@@ -100,7 +106,7 @@ bool use(const std::string& path, Workers& workers) {
     for (std::size_t p = 0; p < header.parts.size(); ++p)
       for (std::size_t c = 0; c < header.parts[p].channels.size(); ++c) channels.push_back({0, int(p), int(c)});
     DeepFrame deep;
-    read_flat(header, channels, {}, {}, deep, workers);
+    read_flat(frame_of(header), 0, channels, {}, {}, deep, workers);
     return true;
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.code(), ExitCode::input) << failure.what();
@@ -207,7 +213,8 @@ TEST(FlattenDeep, SameBytesForAnyThreadsAndBands) {
       FlattenOptions options;
       options.limits.band_bytes = band;
       DeepFrame deep;
-      const FramePixels frame = read_flat(header, channels, std::vector{channels[1]}, options, deep, workers);
+      const FramePixels frame =
+          read_flat(frame_of(header), 0, channels, std::vector{channels[1]}, options, deep, workers);
       EXPECT_EQ(frame.planes[0][1].type, PixelType::float32);  // R is wanted precisely, A as it is stored
       EXPECT_EQ(frame.planes[0][0].type, PixelType::float16);
       EXPECT_TRUE(frame.planes[0][3].empty());  // ZBack
@@ -233,7 +240,7 @@ TEST(FlattenDeep, WinnersLendWhatCannotBeAveraged) {
   std::vector<ChannelRef> channels;
   for (int c = 0; c < 5; ++c) channels.push_back({0, 0, c});
   DeepFrame deep;
-  const FramePixels frame = read_flat(header, channels, {}, {}, deep, workers);
+  const FramePixels frame = read_flat(frame_of(header), 0, channels, {}, {}, deep, workers);
   const auto values = [&](std::size_t c) {
     std::vector<float> row(3);
     to_float(frame.planes[0][c].type, frame.planes[0][c].row(0), row.data(), 3);
@@ -289,7 +296,7 @@ TEST(RealDeep, FlattensLikeTheLibraryWherePointsDoNotCoincide) {
     std::vector<ChannelRef> channels;
     for (const char* channel : {"R", "G", "B", "A"}) channels.push_back({0, 0, *part.channel(channel)});
     DeepFrame deep;
-    const FramePixels frame = read_flat(header, channels, channels, {}, deep, workers);
+    const FramePixels frame = read_flat(frame_of(header), 0, channels, channels, {}, deep, workers);
     const Window& w = part.data_window;
     const Picture theirs = flatten_by_library({path}, {{w.x0, w.y0}, {w.x1 - 1, w.y1 - 1}});
     double worst = 0;
