@@ -20,7 +20,8 @@ void add_layer_options(std::vector<Option>& rows) {
   add("layer-order", kInput, Tier::advanced, "What says which layer is in front.",
       word(
           [](auto& s) -> auto& { return s.job.roles.combine_layers.order; }, kLayerOrders));
-  add("layer-rule", kInput, Tier::advanced, "Whose motion, depth, normal, and id a pixel of the composite has.",
+  add("layer-rule", kInput, Tier::advanced,
+      "Whose motion, depth, normal, and id a pixel of the composite has; of a deep color, which sample's.",
       word(
           [](auto& s) -> auto& { return s.job.roles.combine_layers.rule; }, kLayerRules));
   add("transmittance", kInput, Tier::advanced, "What tells how much a layer lets through.",

@@ -100,7 +100,10 @@ void add_file_options(std::vector<Option>& rows) {
 void add_channel_options(std::vector<Option>& rows) {
   const std::string group = "Channels";
   const auto add = [&rows](Option option) -> Option& { return rows.emplace_back(std::move(option)); };
-  add({"layer", 'l', "LIST", kEach, kBasic, group, "Layers to work on; without it the main layer of each view.",
+  add({"layer", 'l', "LIST", kEach, kBasic, group,
+       "Layers to work on; without it the main layer of each view. Deep parts are resolved where this names one, or "
+       "where "
+       "no color is flat; else they are copied.",
        list(
            [](Settings& s, const std::string& layer) {
              s.job.roles.layers.push_back(layer);

@@ -71,6 +71,8 @@ JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
       .number("half_overflows", double(report.half_overflows))
       .number("opacity_held", double(report.opacity_held))
       .number("companions_not_finite", double(report.companions_not_finite))
+      .number("deep_samples", double(report.deep_samples))
+      .number("deep_repaired", double(report.deep_repaired))
       .number("light_pixels", double(report.lights.pixels))
       .number("light_pixels_adding_up", double(report.lights.adding_up))
       .number("light_residual_input", residual(report.lights, report.lights.input))
@@ -107,6 +109,10 @@ std::string frame_line(const FrameReport& report, int done, int total) {
     if (report.not_finite > 0) line += count_text(report.not_finite, "pixels repaired that were not finite");
     if (report.companions_not_finite > 0)
       line += count_text(report.companions_not_finite, "values of --channels repaired that were not finite");
+    if (report.deep_samples > 0) line += count_text(report.deep_samples, "deep samples flattened");
+    if (report.deep_repaired > 0)
+      line +=
+          count_text(report.deep_repaired, "deep samples put right or left out: no depth, ZBack before Z, bad alpha");
     if (add_up(report.lights)) line += residual_text(report.lights);
     if (report.vectors_bad > 0) line += count_text(report.vectors_bad, "unusable vectors");
     if (report.by_camera > 0) line += share_text(report.by_camera, report.vectors, "of the vectors by the camera");

@@ -13,7 +13,8 @@ namespace {
 std::vector<OutputPart> parts_of(const FrameHeaders& headers, const FramePixels& pixels) {
   std::set<int> decoded;
   for (const Subject& subject : headers.subjects)
-    for (const int part : varve::parts_of(subject)) decoded.insert(part);
+    for (const int part : varve::parts_of(subject))
+      if (!is_deep(headers.files.front().parts[std::size_t(part)])) decoded.insert(part);
   std::vector<OutputPart> parts;
   const FileHeader& source = headers.files.front();
   for (int p = 0; p < int(source.parts.size()); ++p) {
@@ -36,7 +37,8 @@ void copy_sequence(const ResolveJob& job) {
   Workers workers(job.threads);
   for (int frame : info.frames) {
     const FrameHeaders headers = read_frame_headers(job.input, frame, job.roles, jitter);
-    const FileSet files = read_files(headers, {true, true, true}, workers);
+    DeepFrame deep;  // read as the resolve reads them, and copied as they are
+    const FileSet files = read_files(headers, {true, true, true}, deep, workers);
     write_frame(job.output.path(frame), headers.files.front(), parts_of(headers, files.front()), {job.zip_level, {}},
                 workers);
   }

@@ -105,8 +105,9 @@ bool is_needed(const std::vector<ScheduledFrame>& schedule, std::size_t index, c
 /// The file's pixels as stored, for what stands beside the color when it is written.
 FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& workers) {
   if (!s.job.request.keep_channels) return FileSet(headers.files.size());
+  DeepFrame told;  // when the frame was read for the resolve
   return in_frame(headers.frame, [&] {
-    FileSet pixels = read_files(headers, {.whole_parts = true}, workers);
+    FileSet pixels = read_files(headers, {.whole_parts = true, .rule = s.job.roles.combine_layers.rule}, told, workers);
     divide_passed_vectors(headers, pixels.front(), workers);
     return pixels;
   });
@@ -157,6 +158,8 @@ void count(FrameReport& report, const SourceFrame& source, const std::vector<Res
   report.vectors = source.by_camera.pixels;
   report.by_camera = source.by_camera.made + source.by_camera.background;
   report.lens_added = source.by_camera.lens;
+  report.deep_samples += source.deep.samples;
+  report.deep_repaired += source.deep.defects.total();
   for (std::size_t k = 0; k < resolved.size(); ++k) {
     report.pixels += source.presents[k].color.window().pixels();
     report.not_finite += source.presents[k].not_finite;

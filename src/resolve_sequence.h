@@ -27,6 +27,8 @@ struct FrameReport {
   std::size_t lens_added = 0;             ///< pixels to whose vector zoom or lens shift was added
   std::size_t opacity_held = 0;           ///< pixels of layers whose alpha or transmittance lay beyond 0..1
   std::size_t companions_not_finite = 0;  ///< values of --channels that were NaN or infinite
+  std::size_t deep_samples = 0;           ///< of deep parts that were flattened
+  std::size_t deep_repaired = 0;          ///< of these left out or put right: no depth, ZBack before Z, bad alpha
   LightSum lights;                        ///< of the colors that have companions; no pixels without
   std::string restart;                    ///< why the history was dropped; empty if it was not
 };

@@ -53,11 +53,11 @@ constexpr Aov kAovs[] = {
      kByGather},
     {"layer-index", "", PixelType::float32, "layers", "0 and up", "turbo", 0, 8,
      "With --layers: the layer whose motion the pixel follows, 1 being the nearest; 0 for the background, and where "
-     "nothing is composited."},
+     "nothing is composited. In a deep color: the sample."},
     {"layer-variation", "", PixelType::float32, "fraction", "0 to 1", "viridis", 0, 1,
      "With --layers: the change of transmittance across that layer, or what the background is seen through."},
     {"layers", "", PixelType::float32, "layers", "0 and up", "turbo", 0, 8,
-     "With --layers: layers that have a part in the pixel."},
+     "With --layers: layers that have a part in the pixel. In a deep color: samples."},
     {"layer-difference", "", PixelType::float32, "relative", "0 to 2", "inferno", 0, 1,
      "With --layers: how much composite and each differ, in RGB, over the larger of both. Both are worked out, so all "
      "does not mean this plane.",

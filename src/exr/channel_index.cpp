@@ -113,8 +113,8 @@ std::string ChannelIndex::name(ChannelRef ref) const {
   return prefix + channel(ref).name;
 }
 
-ChannelIndex index_channels(std::span<const FileHeader> files) {
-  ChannelIndex index{files, {}, {}};
+ChannelIndex index_channels(std::span<const FileHeader> files, bool deep) {
+  ChannelIndex index{files, {}, {}, deep};
   if (!files.empty()) index.views = views_of(files.front());
   using Key = std::tuple<int, int, std::string, std::vector<std::string>>;
   std::map<Key, std::size_t> known;
@@ -122,14 +122,15 @@ ChannelIndex index_channels(std::span<const FileHeader> files) {
     const FileHeader& file = files[std::size_t(f)];
     for (int p = 0; p < int(file.parts.size()); ++p) {
       const Part& part = file.parts[std::size_t(p)];
-      if (is_deep(part)) continue;
+      if (is_deep(part) && !deep) continue;
       const std::vector<std::string> from_part = part_path(file, part);
       for (int c = 0; c < int(part.channels.size()); ++c) {
         const Channel& channel = part.channels[std::size_t(c)];
         PlacedName placed = place(file, part, from_part, channel.name);
         const auto [entry, fresh] = known.emplace(Key{f, p, placed.view, placed.path}, index.groups.size());
         if (fresh)
-          index.groups.push_back({f, p, std::move(placed.view), std::move(placed.path), placed.part_elements, {}, {}});
+          index.groups.push_back(
+              {f, p, std::move(placed.view), std::move(placed.path), placed.part_elements, {}, is_deep(part), {}});
         ChannelGroup& group = index.groups[entry->second];
         const bool whole = channel.x_sampling == 1 && channel.y_sampling == 1;
         (whole ? group.members : group.subsampled).push_back({std::move(placed.base), {f, p, c}, channel.type});
@@ -191,8 +192,10 @@ std::optional<ChannelRef> mapped_channel(const ChannelIndex& index, const RoleRe
   if (channel.x_sampling != 1 || channel.y_sampling != 1)
     throw Failure(ExitCode::inconsistent,
                   what + "the channel is subsampled; only channels with every pixel can be used");
-  if (is_deep(index.files[std::size_t(found->file)].parts[std::size_t(found->part)]))
-    throw Failure(ExitCode::inconsistent, what + "the channel is in a deep part; flatten it first");
+  if (is_deep(index.files[std::size_t(found->file)].parts[std::size_t(found->part)]) && !index.deep)
+    throw Failure(ExitCode::inconsistent, what +
+                                              "the channel is in a deep part, and the color is in a flat one; "
+                                              "choose the deep part with --layer");
   if (channel.type == PixelType::uint32 && !integers)
     throw Failure(ExitCode::inconsistent, what + "the channel holds integers, which are never filtered");
   return found;

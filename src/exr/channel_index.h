@@ -32,6 +32,7 @@ struct ChannelGroup {
     PixelType type = PixelType::float16;
   };
   std::vector<Member> members;
+  bool deep = false;               ///< of a deep part
   std::vector<Member> subsampled;  ///< channels without a value at every pixel: passed through, never resolved
 
   /// The float channel of that base name (lower case); none if there is none.
@@ -42,8 +43,9 @@ struct ChannelGroup {
 
 struct ChannelIndex {
   std::span<const FileHeader> files;
-  std::vector<ChannelGroup> groups;  ///< in file order; deep parts are left out
+  std::vector<ChannelGroup> groups;  ///< in file order
   std::vector<std::string> views;    ///< of file 0, default first; empty if it has none
+  bool deep = false;                 ///< deep parts are among the groups; else they are left out
 
   /// A channel of view b may serve a color of view a. What has no view serves only where there is one view at most.
   bool views_match(const std::string& a, const std::string& b) const;
@@ -52,7 +54,7 @@ struct ChannelIndex {
   const Channel& channel(ChannelRef ref) const;
 };
 
-ChannelIndex index_channels(std::span<const FileHeader> files);
+ChannelIndex index_channels(std::span<const FileHeader> files, bool deep = false);
 
 /// Layer path as text.
 std::string join_path(std::span<const std::string> path);
@@ -84,6 +86,9 @@ void find_motion(const ChannelIndex& index, const ChannelGroup& color, bool main
 /// refuses what needs it.
 void find_marks(const ChannelIndex& index, const ChannelGroup& color, bool main_color, const RoleRequest& request,
                 Subject& subject);
+
+/// Says what is made of a subject's color that is deep, and what background is when it is flat (deep_channels.cpp).
+void describe_deep(const ChannelIndex& index, const ChannelGroup& color, LayerRule rule, Subject& subject);
 
 /// Finds what a layer lets through (find_transmittance.cpp), where layers are to be combined. Throws
 /// Failure(inconsistent) when channels are asked for and the layer has none.

@@ -91,15 +91,10 @@ void refuse_subsampled_color(const ChannelIndex& index, const ChannelGroup& grou
   for (const ChannelGroup& group : index.groups) refuse_subsampled_color(index, group);
   const FileHeader& file = index.files.front();
   std::vector<std::string> names;
-  bool deep = false;
-  for (const Part& part : file.parts) {
-    deep = deep || is_deep(part);
+  for (const Part& part : file.parts)
     for (const Channel& channel : part.channels) names.push_back(channel.name);
-  }
-  throw Failure(ExitCode::inconsistent,
-                file.path + ": no color channels found among " + list_text(names) +
-                    (deep ? "; deep parts cannot be resolved, flatten them first"
-                          : "; name them with --map R=CHANNEL, --map G=CHANNEL and --map B=CHANNEL"));
+  throw Failure(ExitCode::inconsistent, file.path + ": no color channels found among " + list_text(names) +
+                                            "; name them with --map R=CHANNEL, --map G=CHANNEL and --map B=CHANNEL");
 }
 
 // Views in the order they are resolved in.
@@ -145,6 +140,20 @@ ChosenColor main_color(const std::vector<ColorLayer>& layers, const std::string&
 bool answers_to(const ColorLayer& color, const std::string& name) {
   const std::string wanted = lower_case(name);
   return lower_case(color.layer) == wanted || lower_case(join_path(color.group->path)) == wanted;
+}
+
+// Deep parts are resolved where there is no flat color, and where the user names one that no flat color answers to.
+bool takes_deep(std::span<const FileHeader> files, const RoleRequest& request) {
+  const std::vector<Part>& parts = files.front().parts;
+  if (std::none_of(parts.begin(), parts.end(), is_deep)) return false;
+  const ChannelIndex flat = index_channels(files), all = index_channels(files, true);
+  const std::vector<ColorLayer> flat_layers = color_layers(flat), all_layers = color_layers(all);
+  if (flat_layers.empty()) return true;
+  const auto has = [](const std::vector<ColorLayer>& layers, const std::string& name) {
+    return std::any_of(layers.begin(), layers.end(), [&](const ColorLayer& layer) { return answers_to(layer, name); });
+  };
+  return std::any_of(request.layers.begin(), request.layers.end(),
+                     [&](const std::string& name) { return !has(flat_layers, name) && has(all_layers, name); });
 }
 
 std::vector<ChosenColor> choose_colors(const ChannelIndex& index, const std::vector<ColorLayer>& layers,
@@ -310,7 +319,7 @@ void check_role_names(const RoleRequest& request) {
 std::vector<Subject> find_subjects(std::span<const FileHeader> files, const RoleRequest& request) {
   check_role_names(request);
   if (files.empty()) throw Failure(ExitCode::inconsistent, "there is no file to look for color in");
-  const ChannelIndex index = index_channels(files);
+  const ChannelIndex index = index_channels(files, takes_deep(files, request));
   std::vector<ChosenColor> chosen;
   const std::optional<ColorLayer> mapped = mapped_color(index, request);
   if (mapped) {
@@ -328,6 +337,7 @@ std::vector<Subject> find_subjects(std::span<const FileHeader> files, const Role
     find_depth(index, color.color, request, subject);
     find_motion(index, *color.color.group, color.color.rank <= 1, request, subject);
     find_marks(index, *color.color.group, color.color.rank <= 1, request, subject);
+    if (color.color.group->deep) describe_deep(index, *color.color.group, request.combine_layers.rule, subject);
     find_transmittance(index, *color.color.group, request.combine_layers, subject);
     subjects.push_back(std::move(subject));
   }

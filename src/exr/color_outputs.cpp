@@ -143,7 +143,10 @@ std::vector<ColorOutput> color_outputs(std::span<const FileHeader> files, std::s
     for (const Subject& subject : subjects) outputs.push_back({subject, {outputs.size()}});
     return outputs;
   }
-  const ChannelIndex index = index_channels(files);
+  const bool deep = std::any_of(subjects.begin(), subjects.end(), [&](const Subject& subject) {
+    return is_deep(files.front().parts[std::size_t(part_of(subject))]);
+  });
+  const ChannelIndex index = index_channels(files, deep);
   std::vector<Stack> stacks = stacks_of(subjects);
   if (request.combine_layers.order == LayerOrder::name)
     for (Stack& stack : stacks)

@@ -96,7 +96,9 @@ void check_claims(const Container& container, const ReadLimits& limits) {
     // Deflate cannot beat 1032:1, run lengths and PIZ stay below it; DWA stores a black block of 64 pixels in almost
     // nothing and reaches 40 000:1.
     const bool dwa = part.compression == Compression::dwaa || part.compression == Compression::dwab;
-    if (!is_deep(part)) claimed += claimed_bytes(part, container.raw[i]) / (dwa ? 32 : 1);
+    // Of deep parts a count for each pixel; what samples claim is checked chunk by chunk.
+    claimed +=
+        is_deep(part) ? 4 * double(part.data_window.pixels()) : claimed_bytes(part, container.raw[i]) / (dwa ? 32 : 1);
   }
   if (!(claimed <= limits.inflation * double(container.file.size())))
     throw Failure(ExitCode::input, "'" + container.file.path() + "' claims far more pixels than its " +

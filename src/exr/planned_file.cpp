@@ -78,6 +78,8 @@ void take_channels(std::vector<OutputChannel> channels, const std::string& path,
 }
 
 void set_scanlines(PlannedPart& plan) {
+  if (is_deep(plan.part))
+    for (const char* name : {"version", "maxSamplesPerPixel"}) plan.raw.remove(name);
   plan.part.storage = Storage::scanline;
   plan.raw.remove("tiles");
   plan.raw.set("channels", "chlist", encode_channels(plan.part.channels));

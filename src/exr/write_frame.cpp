@@ -67,10 +67,6 @@ PlannedPart plan_part(const Container& source, const OutputPart& request, const 
   plan.raw = source.raw[std::size_t(request.source_part)];
   change_header(request, plan);
   if (!request.copy_chunks) {
-    if (is_deep(plan.part))
-      throw Failure(ExitCode::output, "cannot write flat channels to '" + path +
-                                          "': " + part_in_words(source.header, request.source_part) +
-                                          " is deep; copy it as it is");
     take_channels(request.channels, path, plan);
     plan.part.compression = choose_compression(request, plan.part, path);
     set_scanlines(plan);

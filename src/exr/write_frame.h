@@ -36,7 +36,7 @@ struct WriteOptions {
 /// Writes `path` with every attribute of the source parts kept (standard, custom and opaque), parts in order.
 /// The file appears under its name only when complete: written beside it under a temporary name, flushed, renamed;
 /// the temporary is removed on failure. The same input gives the same bytes for any number of workers.
-/// Parts without tiles stay scanline; a tiled part whose channels are rewritten becomes scanline.
+/// Parts without tiles stay scanline; a tiled or deep part whose channels are rewritten becomes flat scanline.
 /// Throws Failure(output) with path, reason and remedy; Failure(input) if a source part cannot be copied.
 void write_frame(const std::string& path, const FileHeader& source, std::span<const OutputPart> parts,
                  const WriteOptions& options, Workers& workers);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "diagnose/aov.h"
+#include "plan/deep_plan.h"
 #include "plan/gather_plan.h"
 #include "plan/two_sided_plan.h"
 #include "resolve/rectify_shapes.h"
@@ -211,13 +212,13 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
                                  (in_space ? 16 : 0) + diagnostic_bytes_per_pixel(output, parameters.accumulator)) +
                            window_bytes(parameters.rectify, window_of(info, subject)));
   }
-  return kBaseBytes + raw + histories + at_work;
+  return kBaseBytes + raw + deep_bytes(info) + histories + at_work;
 }
 
 double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parameters& parameters,
                         const OutputRequest& output, int threads) {
   const bool two_sided = parameters.accumulator == Accumulator::two_sided;
-  double nanoseconds = 0;
+  double nanoseconds = deep_nanoseconds(info);
   std::set<PartKey> read;
   for (const ChannelRef ref : plan.channels) read.insert({ref.file, ref.part});
   for (const auto& [file, index] :

@@ -251,8 +251,8 @@ constexpr Feature kFeatures[] = {
     {beyond, 11, "", "The same bytes for any number of threads and any chunks", Reach::option,
      "--threads; chunks under --accumulator=gather and two-sided, with --preroll under recursive"},
     {beyond, 12, "", "Speed against accuracy measured on the shot itself", Reach::option, "`varve measure`"},
-    {beyond, 13, "", "Deep files put in order before layers are told apart", Reach::planned,
-     "deep parts are copied as they are"},
+    {beyond, 13, "", "Deep files put in order before layers are told apart", Reach::option,
+     "a color that is deep, or that --layer names: volumes split, sorted, composited; motion of the winning sample"},
 };
 
 }  // namespace

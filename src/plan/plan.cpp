@@ -8,6 +8,7 @@
 #include "plan/camera_plan.h"
 #include "plan/check_possible.h"
 #include "plan/cost.h"
+#include "plan/deep_plan.h"
 #include "plan/describe_rectify.h"
 #include "plan/gather_plan.h"
 #include "plan/layers_plan.h"
@@ -322,6 +323,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   Plan plan;
   Planner planner(info, parameters, output, plan);
   planner.add("read", true, "");
+  if (std::optional<PlannedPass> flatten = flatten_pass(info)) plan.passes.push_back(std::move(*flatten));
   planner.add("sanitize", true, "pixels that are not finite are kept from spreading");
   for (PlannedPass& pass : samples_passes(info, parameters, plan.notes)) plan.passes.push_back(std::move(pass));
   planner.motion();

@@ -155,10 +155,17 @@ void note_vectors(const SequenceInfo& info, std::vector<std::string>& notes) {
 }
 
 void note_parts(const SequenceInfo& info, std::vector<std::string>& notes) {
+  std::set<int> resolved;
+  for (const Subject& subject : info.first.subjects)
+    for (const int part : parts_of(subject)) resolved.insert(part);
   for (const FileHeader& file : files_on_disk(info.first))
     for (const Part& part : file.parts) {
       const std::string where = part.name.empty() ? file.path : "part " + part.name;
-      if (is_deep(part)) notes.push_back(where + " is deep; it is passed through as it is");
+      const bool color =
+          file.path == info.first.files.front().path && resolved.contains(int(&part - file.parts.data()));
+      if (is_deep(part) && !color)
+        notes.push_back(where + " is deep; it is passed through as it is" +
+                        (file.path == info.first.files.front().path ? ", unless --layer names it" : ""));
       if (!is_lossy(part.compression) || is_deep(part)) continue;
       std::vector<std::string> data;
       for (const Channel& channel : part.channels) {

@@ -69,7 +69,8 @@ struct SequenceInfo {
 SequenceInfo probe_sequence(const InputSequence& input, const std::vector<int>& frames, const RoleRequest& roles,
                             const JitterSource& jitter, const CameraSource& cameras = {});
 
-/// The numbers of a few frames, for `probe --pixels`: ranges and bad values of each channel that has a role.
+/// The numbers of a few frames, for `probe --pixels`: ranges and bad values of each channel that has a role; of a deep
+/// part those of its samples, and a row that tells how many a pixel has.
 struct ChannelStatistics {
   int frame = 0;
   std::string part, channel, role;

@@ -154,7 +154,11 @@ void Matcher::match_by_name() {
     const FileHeader& file = headers.files.front();
     for (std::size_t p = 0; p < file.parts.size(); ++p) {
       if (is_deep(file.parts[p])) {
-        say("part " + file.parts[p].name + " is deep, and deep parts are not compared");
+        const bool color =
+            std::ranges::any_of(headers.subjects, [&](const Subject& s) { return part_of(s) == int(p); });
+        say("part " + file.parts[p].name +
+            (color ? " is deep; its color is compared flattened, its other channels are not"
+                   : " is deep, and deep parts are not compared"));
         continue;
       }
       for (std::size_t c = 0; c < file.parts[p].channels.size(); ++c)

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "exr/convert.h"
-#include "plan/find_samples.h"
+#include "stages/flatten_deep.h"
 
 namespace varve {
 namespace {
@@ -22,11 +22,12 @@ Plane<float> plane_of(const RawPlane& raw, Workers& workers) {
 
 FileSet read_refs(const FrameHeaders& headers, const std::vector<ChannelRef>& refs, Workers& workers) {
   FileSet files;
+  DeepFrame untold;
   for (int file = 0; file < int(headers.files.size()); ++file) {
     std::vector<ChannelRef> here;
     for (const ChannelRef& ref : refs)
       if (ref.file == file && std::find(here.begin(), here.end(), ref) == here.end()) here.push_back(ref);
-    files.push_back(here.empty() ? FramePixels{} : read_shown_channels(headers, file, here, workers));
+    files.push_back(here.empty() ? FramePixels{} : read_flat(headers, file, here, here, {}, untold, workers));
   }
   return files;
 }

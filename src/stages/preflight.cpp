@@ -15,6 +15,7 @@
 #include "base/version.h"
 #include "exr/write_frame.h"
 #include "plan/camera_plan.h"
+#include "plan/deep_plan.h"
 #include "plan/layers_plan.h"
 #include "plan/preset.h"
 
@@ -190,7 +191,7 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   text += " camera=" + describe_cameras(job.camera);
   text += " jitter=" + describe_jitter(job.jitter) + " convention=" + job.roles.convention;
   for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
-  text += layers_text(job.roles.combine_layers, info);
+  text += layers_text(job.roles.combine_layers, info) + deep_text(job.roles.combine_layers, info);
   for (const std::string& channels : job.roles.channels) text += " channels=" + channels;
   if (!job.roles.channels.empty())
     text += std::string(" channel-weights=") + (job.roles.channel_weights == ChannelWeights::own ? "own" : "beauty");

@@ -46,11 +46,12 @@ void add(std::vector<ChannelRef>& wanted, ChannelRef ref) {
 
 FileSet read_files(const FrameHeaders& headers, const std::vector<ChannelRef>& wanted, Workers& workers) {
   FileSet files;
+  DeepFrame untold;
   for (int f = 0; f < int(headers.files.size()); ++f) {
     std::vector<ChannelRef> here;
     for (ChannelRef ref : wanted)
       if (ref.file == f) here.push_back(ref);
-    files.push_back(read_channels(headers.files[std::size_t(f)], here, workers));
+    files.push_back(read_flat(headers, f, here, {}, {}, untold, workers));
   }
   return files;
 }

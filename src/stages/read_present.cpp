@@ -193,10 +193,16 @@ std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const Chan
 
 }  // namespace
 
-FileSet read_files(const FrameHeaders& headers, const ChannelNeeds& needs, Workers& workers) {
+FileSet read_files(const FrameHeaders& headers, const ChannelNeeds& needs, DeepFrame& deep, Workers& workers) {
+  std::vector<ChannelRef> colors;
+  for (const Subject& subject : headers.subjects)
+    for (const auto& channel : subject.color)
+      if (channel) colors.push_back(*channel);
   FileSet pixels;
   for (int file = 0; file < int(headers.files.size()); ++file)
-    pixels.push_back(read_shown_channels(headers, file, channels_to_read(headers, needs, file), workers));
+    pixels.push_back(
+        read_flat(headers, file, channels_to_read(headers, needs, file), file == 0 ? colors : std::vector<ChannelRef>(),
+                  {.rule = needs.rule, .show = needs.show_combined && file == 0, .limits = {}}, deep, workers));
   return pixels;
 }
 

@@ -9,6 +9,7 @@
 #include "motion/motion.h"
 #include "plan/probe.h"
 #include "resolve/present.h"
+#include "stages/flatten_deep.h"
 
 namespace varve {
 
@@ -22,10 +23,13 @@ struct ChannelNeeds {
   bool whole_parts = false;  ///< every channel of the parts that hold a color or a companion
   bool forward = false;      ///< vectors to the next frame, even where there are others
   bool id = false, normal = false, reactive = false, responsive = false;
+  LayerRule rule = LayerRule::variation;  ///< which sample a deep pixel follows
+  bool show_combined = false;             ///< and which it was
 };
 
-/// Reads what a frame needs, each channel once. Throws what read_channels throws.
-FileSet read_files(const FrameHeaders& headers, const ChannelNeeds& needs, Workers& workers);
+/// Reads what a frame needs, each channel once; deep parts are flattened, colors of subjects as float, and told of in
+/// `deep`. Throws what read_channels and read_deep throw.
+FileSet read_files(const FrameHeaders& headers, const ChannelNeeds& needs, DeepFrame& deep, Workers& workers);
 
 struct ReadOptions {
   MotionParameters motion;

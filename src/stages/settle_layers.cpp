@@ -39,7 +39,8 @@ std::vector<LayerDepth> measure_depths(const ResolveJob& job, int frame, Workers
                                                 subject.layer +
                                                 " has none; list the layers front to back with "
                                                 "--layer and give --layer-order list");
-  const FileSet pixels = in_frame(frame, [&] { return read_files(headers, {.depth = true}, workers); });
+  DeepFrame deep;
+  const FileSet pixels = in_frame(frame, [&] { return read_files(headers, {.depth = true}, deep, workers); });
   std::vector<LayerDepth> depths;
   for (const Subject& subject : headers.subjects) {
     const auto same = [&](const LayerDepth& d) { return d.layer == subject.layer; };

@@ -32,6 +32,7 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, const Nei
   SourceFrame source;
   source.headers = read_frame_headers(options.job.input, frame, options.job.roles, options.jitter, options.cameras);
   check_same_subjects(options.info.first, source.headers, plan);
+  DeepFrame deep;
   source.pixels = in_frame(frame, [&] {
     return read_files(source.headers,
                       {.depth = plan.use_depth || plan.use_cameras,
@@ -41,8 +42,10 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, const Nei
                        .id = plan.use_id,
                        .normal = plan.use_normal,
                        .reactive = plan.use_reactive,
-                       .responsive = plan.use_responsive},
-                      workers);
+                       .responsive = plan.use_responsive,
+                       .rule = options.job.roles.combine_layers.rule,
+                       .show_combined = options.show_combined},
+                      deep, workers);
   });
   const ReadOptions read{.motion = options.job.parameters.motion,
                          .use_depth = plan.use_depth || plan.use_cameras,
@@ -52,6 +55,7 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, const Nei
                          .use_normal = plan.use_normal,
                          .use_reactive = plan.use_reactive,
                          .use_responsive = plan.use_responsive};
+  source.deep = deep.counts;
   std::vector<Present> presents;
   for (const Subject& subject : source.headers.subjects) {
     const Part& part = source.headers.files.front().parts[std::size_t(part_of(subject))];
@@ -59,6 +63,12 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, const Nei
                                     options.into_working_space, source.vectors_bad, workers));
     if (const auto jitter = jitter_of_subject(source.headers, presents.size() - 1))
       presents.back().jitter = glm::dvec2(jitter->x, jitter->y);
+    if (const auto shown = deep.combined.find(part_of(subject)); shown != deep.combined.end()) {
+      CombinePlanes& combined = presents.back().combined;
+      combined.winner = shown->second.winner.clone();
+      combined.variation = shown->second.variation.clone();
+      combined.touched = shown->second.touched.clone();
+    }
   }
   if (plan.use_cameras) {
     source.cameras =

@@ -20,6 +20,7 @@ struct SourceFrame {
   std::vector<CamerasAround> cameras;  ///< one for each of headers.subjects; empty without
   CameraVectors by_camera;
   std::size_t vectors_bad = 0;  ///< vectors that cannot be used
+  DeepCounts deep;              ///< samples of deep parts that were flattened
 };
 
 /// Names the frame in what a stage has to say: file names alone need not tell it.

@@ -169,7 +169,8 @@ std::set<std::string> stale_diagnostics(const Subject& subject) {
   return names;
 }
 
-/// The part's other channels as they were, unless one of that name is written already or is out of date.
+/// The part's other channels as they were, unless one of that name is written already or is out of date,
+/// or means nothing now that a deep part is flat.
 void add_kept(OutputPart& to, const Part& part, int p, const std::vector<RawPlane>& pixels, const PassedOn& passed_on,
               std::set<std::string> taken) {
   for (const OutputChannel& channel : to.channels) taken.insert(channel.channel.name);
@@ -177,6 +178,7 @@ void add_kept(OutputPart& to, const Part& part, int p, const std::vector<RawPlan
     const ChannelRef ref{0, p, int(c)};
     Channel channel = part.channels[c];
     channel.name = passed_on_name(passed_on, channel, ref);
+    if (is_deep(part) && pixels[c].empty()) continue;
     if (!is_dropped(passed_on, ref) && taken.insert(channel.name).second) to.channels.push_back({channel, &pixels[c]});
   }
 }
