@@ -23,6 +23,10 @@ constexpr Word<bool> kFindCuts[] = {
     {"on", true, "history starts anew where a frame does not follow from the one before"},
     {"off", false, "only --cuts and gaps in the frame numbers count"},
 };
+constexpr Word<bool> kChecksMotion[] = {
+    {"on", true, "vectors that lead astray more often than no motion stop the run, with the reading that fits"},
+    {"off", false, "vectors are believed"},
+};
 constexpr Word<std::optional<Compression>> kCompressions[] = {
     {"keep", std::nullopt, "as the input; ZIP where that is lossy"},
     {"none", Compression::none, "largest and fastest"},
@@ -203,6 +207,10 @@ void add_motion_options(std::vector<Option>& rows) {
       overriding(
           number([](auto& s) -> auto& { return s.job.roles.encoding.shutter; }, {0, 1000, true}),
           [](auto& s) -> auto& { return s.job.roles.override_shutter; }));
+  rows.push_back({"check-motion", 0, "WORD", kResolve, kAdvanced, group,
+                  "Whether the vectors of a few frames are held against the pixels before the work starts.",
+                  word(
+                      [](auto& s) -> auto& { return s.job.check_motion; }, kChecksMotion)});
 }
 
 void add_parameter_options(std::vector<Option>& rows) {

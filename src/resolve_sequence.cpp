@@ -17,6 +17,7 @@
 #include "stages/preflight.h"
 #include "stages/previews.h"
 #include "stages/settle_layers.h"
+#include "stages/settle_vectors.h"
 #include "stages/two_sided_pass.h"
 #include "stages/write_resolved.h"
 
@@ -228,10 +229,13 @@ Plan plan_sequence(const ResolveJob& asked, SequenceInfo& info) {
 }
 
 ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& events) {
-  // Probe and plan: headers only, unless depth says which layer is in front.
-  const SettledLayers ordered = settle_layers(asked);
+  // Probe and plan: headers only, unless depth says which layer is in front, or pixels what the vectors mean.
+  const SettledVectors settled = settle_vectors(asked);
+  const SettledLayers ordered = settle_layers(settled.job);
   const ResolveJob& job = ordered.job;
   Setup s = set_up(ordered);
+  if (!settled.note.empty()) s.plan.notes.push_back(settled.note);
+  if (!settled.note.empty() && events.warning) events.warning(settled.note);
   if (events.planned) events.planned(s.info, s.plan);
 
   // Preflight: what will be written, and whether it can be.
@@ -239,6 +243,7 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
   check_outputs(job, schedule);
 
   Workers workers(job.threads);
+  if (job.check_motion && s.plan.use_motion) check_vectors(job, s.info, events.warning, workers);
   std::vector<SubjectState> states(accumulated_subjects(s.info.first.outputs, s.info.first.subjects).size());
   FrameTrace trace;
   std::set<std::string> told;

@@ -40,8 +40,9 @@ const StoredValues& stored(const VectorHypothesis& h, const FollowedPlace& place
   return h.encoding.direction == MotionDirection::previous ? place.here : place.there;
 }
 
+// `jitter`: how much of the predictions is no motion but the change of jitter.
 template <class Predict>
-Fit fit(const std::vector<FollowedPlace>& places, Predict predict) {
+Fit fit(const std::vector<FollowedPlace>& places, int jitter, Predict predict) {
   Fit fit;
   double close_moving = 0, close_resting = 0;
   std::size_t any_moving = 0, resting = 0, agree = 0, roughly = 0, recalled = 0;
@@ -53,7 +54,7 @@ Fit fit(const std::vector<FollowedPlace>& places, Predict predict) {
     const double reach = 2 * place.pixel + 0.1 * far;
     const double closeness = distance < reach ? 1 - distance / reach : 0.0;  // NaN is not close
     const bool agrees = distance <= tolerance_of(place);
-    const bool led = length(*by) > 1;
+    const bool led = length(*by + double(jitter) * place.jitter) > 1;
     if (!led && !moves(place)) {
       close_resting += closeness, ++resting;
       continue;
@@ -118,7 +119,7 @@ bool is_at_rest(const VectorHypothesis& h, const FollowedPlace& place) {
 }
 
 Fit fit_of(const VectorHypothesis& h, const std::vector<FollowedPlace>& places, const Window& display) {
-  return fit(places, [&](const FollowedPlace& place) -> std::optional<glm::dvec2> {
+  return fit(places, h.jitter, [&](const FollowedPlace& place) -> std::optional<glm::dvec2> {
     // Things without vectors are told of elsewhere; they do not speak against a reading of the others.
     if (moves(place) && is_at_rest(h, place)) return std::nullopt;
     const glm::dvec2 by = predicted(h, place, display);
@@ -128,7 +129,7 @@ Fit fit_of(const VectorHypothesis& h, const std::vector<FollowedPlace>& places, 
 }
 
 Fit fit_of_rest(const std::vector<FollowedPlace>& places) {
-  return fit(places, [](const FollowedPlace&) { return std::optional<glm::dvec2>(glm::dvec2(0)); });
+  return fit(places, 0, [](const FollowedPlace&) { return std::optional<glm::dvec2>(glm::dvec2(0)); });
 }
 
 FoundScale find_scale(VectorHypothesis& h, const std::vector<FollowedPlace>& places, const Window& display) {
@@ -186,7 +187,8 @@ FoundScale find_scale(VectorHypothesis& h, const std::vector<FollowedPlace>& pla
   }
   if (!(best > 0)) return {};
   found.scale = best;
-  found.deviation = deviation;
+  // Where pixels alias, motion is measured short or long by a percent or two, however many places there are.
+  found.deviation = std::hypot(deviation, 0.01 * best);
   h.encoding.scale = best;
   return found;
 }

@@ -70,7 +70,7 @@ Fit fit_of(const VectorHypothesis& hypothesis, const std::vector<FollowedPlace>&
 Fit fit_of_rest(const std::vector<FollowedPlace>& places);
 
 /// The scale that fits best (written into the encoding's scale, as a factor on what it was), or 0 where none does. With
-/// its standard deviation over the places that agree.
+/// its standard deviation over the places that agree, and one percent for what aliasing does to all of them.
 struct FoundScale {
   double scale = 0, deviation = 0;
   double scale_x = 0, scale_y = 0;  ///< each axis by itself; 0 where too little moves along it

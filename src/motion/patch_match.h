@@ -1,6 +1,7 @@
 // Where small patches of one picture lie in another one: motion measured from pixels, to hold stored vectors against.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -23,8 +24,8 @@ struct TonePyramid {
 /// Brightness that becomes tone 0.5: the median of the positive ones; 1 for black. `color` is finite.
 double middle_brightness(const Plane<glm::vec4>& color);
 
-/// Levels go on as long as the shorter side keeps 40 pixels.
-TonePyramid tone_pyramid(const Plane<glm::vec4>& color, double middle, Workers& workers);
+/// Levels go on as long as the shorter side keeps 40 pixels, at most `levels`.
+TonePyramid tone_pyramid(const Plane<glm::vec4>& color, double middle, Workers& workers, std::size_t levels = 16);
 
 /// Edge of a patch is 2 * kPatchRadius + 1 pixels.
 inline constexpr int kPatchRadius = 5;

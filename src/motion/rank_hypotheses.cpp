@@ -29,12 +29,18 @@ double lower_bound(double won, double of) {
 
 using Predict = std::function<glm::dvec2(const FollowedPlace&)>;
 
+// An edge at rest that is sampled once falls on the same pixels wherever the sample was, as if it moved with the
+// jitter: what rests does not decide between readings that differ by less than the jitter does.
+bool is_locked(const FollowedPlace& place, const glm::dvec2& a, const glm::dvec2& b) {
+  return length(place.moved) <= 1.5 && length(a) <= 1.5 && length(b) <= 1.5;
+}
+
 VectorVotes vote(const Predict& first, const Predict& second, const std::vector<FollowedPlace>& places,
                  bool only_moving = false) {
   VectorVotes c;
   for (const FollowedPlace& place : places) {
-    if (only_moving && !(length(place.moved) > 1)) continue;
     const glm::dvec2 a = first(place), b = second(place);
+    if (only_moving ? !(length(place.moved) > 1) : is_locked(place, a, b)) continue;
     const double off_a = length(a - place.moved), off_b = length(b - place.moved);
     if (!std::isfinite(off_a) || !std::isfinite(off_b)) continue;  // nothing is stored there
     if (length(a - b) < 0.3 * place.pixel + 0.01 * length(place.moved)) continue;
@@ -129,9 +135,11 @@ std::size_t settle(const std::vector<RankedHypothesis>& all, std::size_t best, c
 void count_apart(const VectorHypothesis& first, RankedHypothesis& other, const std::vector<FollowedPlace>& places,
                  const Window& display) {
   for (const FollowedPlace& place : places) {
-    const bool by_first = length(predicted(first, place, display) - place.moved) <= tolerance_of(place);
-    const glm::dvec2 off = predicted(other.hypothesis, place, display) - place.moved;
-    const bool by_other = length(off) <= tolerance_of(place);
+    const glm::dvec2 a = predicted(first, place, display), b = predicted(other.hypothesis, place, display);
+    if (is_locked(place, a, b)) continue;
+    const double off_first = length(a - place.moved), off_other = length(b - place.moved);
+    if (!std::isfinite(off_first) || !std::isfinite(off_other)) continue;  // nothing is stored there
+    const bool by_first = off_first <= tolerance_of(place), by_other = off_other <= tolerance_of(place);
     other.first_alone += by_first && !by_other;
     other.alone += by_other && !by_first;
   }
@@ -163,9 +171,10 @@ void judge_pairs(ChannelRanking& ranking, const std::vector<RankedHypothesis>& p
 
 VectorFinding judge(const ChannelRanking& ranking) {
   const RankedHypothesis& first = ranking.ranking.front();
+  if (first.fit.predicted < kFewestPlaces) return VectorFinding::nothing;
   const bool beats_rest = ranking.against_rest.at_least > kBeaten;
   const bool agrees = first.fit.agreement >= kAgreement && first.fit.recall >= kRecall;
-  if (!beats_rest || (!agrees && first.fit.rough_agreement < kRough)) return VectorFinding::nothing;
+  if (!beats_rest || !agrees) return VectorFinding::nothing;
   if (!ranking.contradicting.empty()) return VectorFinding::contradictory;
   bool rivals = false;
   for (const RankedHypothesis& other : ranking.ranking) {
@@ -175,15 +184,34 @@ VectorFinding judge(const ChannelRanking& ranking) {
       return VectorFinding::contradictory;
   }
   if (rivals) return VectorFinding::ambiguous;
-  return agrees ? VectorFinding::found : VectorFinding::rough;
+  return VectorFinding::found;
+}
+
+// Where no constant scale will do: a factor for each pair of frames.
+void take_rough(ChannelRanking& result, const std::vector<FollowedPlace>& places, int x, int y, const Window& display) {
+  const std::vector<RoughReading> readings = rough_readings(places, x, y, display);
+  const RoughReading& best = readings.front();
+  if (best.places < kFewestPlaces || !(best.agreement >= kRough)) return;
+  result.finding = VectorFinding::rough;
+  result.ranking.clear();
+  for (const RoughReading& reading : readings) {
+    // Places of a pair stand or fall together, so a few pairs more do not decide between readings.
+    if (reading.agreement < kRough) break;
+    RankedHypothesis ranked;
+    ranked.hypothesis = reading.hypothesis;
+    ranked.fit = fit_of(reading.hypothesis, places, display);
+    ranked.fit.rough_agreement = reading.agreement;
+    ranked.scales = reading.scales;
+    ranked.rival = !result.ranking.empty();
+    result.ranking.push_back(ranked);
+  }
+  result.against_rest = votes_against_rest(best.hypothesis, places, display);
 }
 
 }  // namespace
 
 VectorVotes votes_between(const VectorHypothesis& first, const VectorHypothesis& second,
                           const std::vector<FollowedPlace>& places, const Window& display) {
-  // An edge at rest that is sampled once falls on the same pixels wherever the sample was, as if the jitter moved with
-  // it: what rests does not tell where the jitter is.
   return vote(predict_by(first, display), predict_by(second, display), places, first.jitter != second.jitter);
 }
 
@@ -198,6 +226,7 @@ Pull pull_between(const VectorHypothesis& first, const VectorHypothesis& second,
   double pixels = 0, motion = 0;
   for (const FollowedPlace& place : places) {
     const glm::dvec2 a = predicted(first, place, display), apart = predicted(second, place, display) - a;
+    if (is_locked(place, a, a + apart)) continue;
     const glm::dvec2 off = place.moved - a, from_middle = off - 0.5 * apart;
     // Lost places are left out by their distance from the middle of both, which favors neither.
     if (!(length(from_middle) < place.pixel + 0.02 * length(place.moved))) continue;
@@ -271,8 +300,8 @@ ChannelRanking rank_hypotheses(const std::vector<FollowedPlace>& places, int x, 
   result.against_rest = votes_against_rest(first, telling, display);
   result.confidence = std::min(result.confidence, result.against_rest.at_least);
   judge_pairs(result, all, telling, display);
-  if (result.ranking.front().fit.predicted < kFewestPlaces) return result;
   result.finding = judge(result);
+  if (result.finding == VectorFinding::nothing) take_rough(result, places, x, y, display);
   if (result.finding != VectorFinding::found) result.confidence = 0;
   return result;
 }
@@ -304,7 +333,7 @@ std::vector<std::string> left_open(const ChannelRanking& ranking) {
     sign_x = sign_x || (h.encoding.sign_x != first.encoding.sign_x) != turned;
     sign_y = sign_y || (h.encoding.sign_y != first.encoding.sign_y) != turned;
     unit = unit || h.encoding.unit != first.encoding.unit || h.encoding.bias != first.encoding.bias ||
-           h.encoding.scale != first.encoding.scale;
+           (h.encoding.scale != first.encoding.scale && ranking.finding != VectorFinding::rough);
     order = order || h.x != first.x;
     jitter = jitter || h.jitter != first.jitter;
   }

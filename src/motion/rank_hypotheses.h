@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "motion/hypotheses.h"
+#include "motion/rough_reading.h"
 
 namespace varve {
 
@@ -26,7 +27,7 @@ struct Pull {
 /// What the pixels say about two channels.
 enum class VectorFinding {
   found,          ///< one hypothesis, and every other one is beaten
-  rough,          ///< one direction and sign, but no constant scale brings the vectors onto the motion
+  rough,          ///< the vectors follow the motion, but no constant scale brings them onto it; rivals may be left
   ambiguous,      ///< the best one has rivals that lead to the same places in these frames
   contradictory,  ///< pairs of frames, or parts of the picture, speak for different hypotheses
   nothing,        ///< no hypothesis agrees with the motion of most places
@@ -41,6 +42,7 @@ struct RankedHypothesis {
   Pull pull;                               ///< from the first towards this one, where votes do not decide
   std::size_t alone = 0, first_alone = 0;  ///< of a rival: places that agree with it alone, and with the first alone
   bool rival = false;                      ///< not told from the first one
+  std::vector<PairScale> scales;           ///< of a rough reading: the factors of each pair of frames
   double residual = -1;  ///< median patch_difference along its vectors over places that move; -1 where not measured
 };
 

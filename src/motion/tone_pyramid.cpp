@@ -56,7 +56,7 @@ double middle_brightness(const Plane<glm::vec4>& color) {
   return *middle;
 }
 
-TonePyramid tone_pyramid(const Plane<glm::vec4>& color, double middle, Workers& workers) {
+TonePyramid tone_pyramid(const Plane<glm::vec4>& color, double middle, Workers& workers, std::size_t levels) {
   const Window& w = color.window();
   Plane<float> tone(w);
   workers.for_rows(w.y0, w.y1, [&](int y) {
@@ -67,7 +67,8 @@ TonePyramid tone_pyramid(const Plane<glm::vec4>& color, double middle, Workers& 
   });
   TonePyramid pyramid;
   pyramid.levels.push_back(blurred(tone, workers));
-  while (std::min(pyramid.levels.back().window().width(), pyramid.levels.back().window().height()) >= 80)
+  while (pyramid.levels.size() < levels &&
+         std::min(pyramid.levels.back().window().width(), pyramid.levels.back().window().height()) >= 80)
     pyramid.levels.push_back(halved(pyramid.levels.back(), workers));
   return pyramid;
 }

@@ -40,6 +40,7 @@ FrameVectors read_frame_vectors(const FrameHeaders& headers, std::size_t k, cons
   subject.companions.clear();
   FrameVectors frame;
   if (needs.vectors) frame.layers = vector_layers(headers.files, subject);
+  if (needs.only) frame.layers.push_back({"", true, {(*needs.only)[0], (*needs.only)[1]}, {}});
   std::vector<ChannelRef> refs;
   for (const std::optional<ChannelRef>& channel : subject.color)
     if (channel) refs.push_back(*channel);

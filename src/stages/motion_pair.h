@@ -1,6 +1,8 @@
 // Two neighboring frames, read to hold vectors against pixels.
 #pragma once
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "exr/vector_layers.h"
@@ -20,8 +22,9 @@ struct FrameVectors {
 
 /// What of a frame is read besides color and vectors.
 struct VectorNeeds {
-  bool marks = false;  ///< depth and id
-  bool vectors = true;
+  bool marks = false;                  ///< depth and id
+  bool vectors = true;                 ///< all layers that may hold vectors
+  std::optional<VectorChannels> only = {};  ///< or just these, as a layer of two channels
 };
 
 /// Reads subject `k` of a frame whose headers were read with without_vectors().

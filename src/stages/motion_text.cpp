@@ -61,10 +61,25 @@ std::string scale_text(const RankedHypothesis& ranked) {
   return text;
 }
 
-std::vector<std::string> rows_of(const RankedHypothesis& ranked) {
+std::vector<std::string> rows_of(const MotionEncoding& encoding) {
   std::vector<std::string> rows;
-  for (const std::string_view name : conventions_like(ranked.hypothesis.encoding)) rows.emplace_back(name);
+  for (const std::string_view name : conventions_like(encoding)) rows.emplace_back(name);
   return rows;
+}
+
+// From the least to the greatest factor along an axis.
+std::string span_text(const std::vector<PairScale>& scales, double PairScale::*axis) {
+  double least = 1e300, greatest = 0;
+  for (const PairScale& scale : scales)
+    if (scale.*axis > 0) least = std::min(least, scale.*axis), greatest = std::max(greatest, scale.*axis);
+  if (greatest == 0) return "none";
+  return number(least, "%.3g") + (greatest > 1.02 * least ? " to " + number(greatest, "%.3g") : "");
+}
+
+// The factors of all pairs together.
+std::string scales_text(const std::vector<PairScale>& scales) {
+  return "it takes factors of " + span_text(scales, &PairScale::along_x) + " along x and " +
+         span_text(scales, &PairScale::along_y) + " along y, as vectors scaled by an open shutter would";
 }
 
 const char* name_of(VectorFinding finding) {
@@ -180,7 +195,8 @@ std::string hypothesis_json(const RankedHypothesis& ranked) {
                  {"rival", boolean(ranked.rival)},
                  {"decided", std::to_string(ranked.first_against.decided)},
                  {"won", std::to_string(ranked.first_against.won)},
-                 {"conventions", array(rows_of(ranked), [](const std::string& row) { return json_quote(row); })}});
+                 {"conventions",
+                  array(rows_of(ranked.hypothesis.encoding), [](const std::string& row) { return json_quote(row); })}});
 }
 
 std::string votes_json(const MarkVotes& votes) {
@@ -218,8 +234,13 @@ std::string verdict_text(const VectorLayer& layer, const VectorReport& report, c
   if (ranking.finding == VectorFinding::nothing || ranking.ranking.empty())
     return "nothing wins: no reading of these channels agrees with the motion of the pixels";
   const RankedHypothesis& first = ranking.ranking.front();
-  const std::vector<std::string> rows = rows_of(first);
+  std::vector<std::string> rows = rows_of(first.hypothesis.encoding);
   std::string text = names_text(layer, first.hypothesis) + " lead " + words_of(first.hypothesis) + scale_text(first);
+  if (ranking.finding == VectorFinding::rough) {
+    MotionEncoding plain = first.hypothesis.encoding;
+    plain.scale = 1;
+    rows = rows_of(plain);
+  }
   const std::string same =
       rows.empty() ? "no convention of the table is like that" : "as convention " + joined(rows, " or ");
   switch (ranking.finding) {
@@ -227,8 +248,9 @@ std::string verdict_text(const VectorLayer& layer, const VectorReport& report, c
       return text + ": " + same + "; confidence " + number(ranking.confidence, "%.2f");
     case VectorFinding::rough:
       return "roughly, " + text + ": " + same +
-             "; the direction and the signs are clear, but no constant scale brings the vectors onto the motion, which "
-             "may be curved";
+             "; no constant scale brings the vectors onto the motion, which may be curved: " +
+             scales_text(first.scales) +
+             (left_open(ranking).empty() ? "" : "; left open: " + joined(left_open(ranking), ", "));
     case VectorFinding::ambiguous: {
       std::size_t rivals = 0;
       for (const RankedHypothesis& ranked : ranking.ranking) rivals += ranked.rival;

@@ -201,6 +201,19 @@ std::optional<VectorHypothesis> told(const Subject& subject, const VectorLayer& 
   return std::nullopt;
 }
 
+// Of rough readings that are as good, the one that the names tell.
+void prefer_told(ChannelRanking& ranking, const VectorHypothesis& told_reading) {
+  for (std::size_t i = 1; i < ranking.ranking.size(); ++i) {
+    const MotionEncoding &e = ranking.ranking[i].hypothesis.encoding, &t = told_reading.encoding;
+    if (!ranking.ranking[i].rival || e.direction != t.direction || e.sign_x != t.sign_x || e.sign_y != t.sign_y)
+      continue;
+    std::swap(ranking.ranking[0], ranking.ranking[i]);
+    ranking.ranking[0].rival = false;
+    ranking.ranking[i].rival = true;
+    return;
+  }
+}
+
 VectorReport judge_channels(const Collected& all, const Collected::Layer& layer, std::pair<int, int> channels,
                             const Subject* told_subject) {
   VectorReport report;
@@ -216,6 +229,7 @@ VectorReport judge_channels(const Collected& all, const Collected::Layer& layer,
   }
   const std::optional<VectorHypothesis> given =
       told_subject ? told(*told_subject, layer.layer, channels.first, channels.second) : std::nullopt;
+  if (given && report.ranking.finding == VectorFinding::rough) prefer_told(report.ranking, *given);
   if (given) {
     report.given.emplace();
     report.given->hypothesis = *given;
@@ -312,14 +326,31 @@ RoleRequest without_vectors(RoleRequest roles) {
   return roles;
 }
 
-std::optional<FrameHeaders> told_by_names(const ResolveJob& job, int frame, const JitterSource& jitter) {
+std::optional<FrameHeaders> told_by_names(const ResolveJob& job, int frame, const JitterSource& jitter,
+                                          std::string* refusal) {
   try {
     return read_frame_headers(job.input, frame, job.roles, jitter);
   } catch (const Failure& failure) {
     // Vectors whose names do not tell what they mean: the pixels are asked instead.
     if (failure.code() != ExitCode::inconsistent) throw;
+    if (refusal) *refusal = failure.what();
     return std::nullopt;
   }
+}
+
+FollowedFrames follow_frames(const ResolveJob& job, const std::vector<int>& frames, const MotionProbe& probe,
+                             Workers& workers) {
+  const JitterSource jitter = parse_jitter_source(job.jitter);
+  const RoleRequest roles = without_vectors(job.roles);
+  FollowedFrames followed;
+  followed.pairs = frame_pairs(frames, probe.pairs);
+  Collected all;
+  for (const auto& [earlier, later] : followed.pairs)
+    collect_pair(all, read_frame_headers(job.input, later, roles, jitter),
+                 read_frame_headers(job.input, earlier, roles, jitter), 0, job.parameters.motion, probe, workers);
+  followed.display = all.display;
+  for (Collected::Layer& layer : all.layers) followed.layers.push_back({layer.layer, std::move(layer.places)});
+  return followed;
 }
 
 MotionReport probe_motion(const ResolveJob& job, const std::vector<int>& frames, const MotionProbe& probe,

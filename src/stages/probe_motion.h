@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exr/vector_layers.h"
@@ -57,13 +58,28 @@ struct MotionProbe {
   bool marks = true;  ///< ids and depths too
 };
 
+/// Places of the first subject with what each layer stores for them: what a ranking is made from.
+struct FollowedLayer {
+  VectorLayer layer;
+  std::vector<FollowedPlace> places;
+};
+struct FollowedFrames {
+  std::vector<std::pair<int, int>> pairs;  ///< earlier, later frame of FollowedPlace::pair
+  Window display;
+  std::vector<FollowedLayer> layers;
+};
+FollowedFrames follow_frames(const ResolveJob& job, const std::vector<int>& frames, const MotionProbe& probe,
+                             Workers& workers);
+
 /// Looks at pairs of neighboring frames among `frames`. Reads what it needs and nothing else. Never throws for want of
 /// evidence: the report says so.
 MotionReport probe_motion(const ResolveJob& job, const std::vector<int>& frames, const MotionProbe& probe,
                           Workers& workers);
 
-/// Headers of a frame with the vectors that names or options tell; none where they do not.
-std::optional<FrameHeaders> told_by_names(const ResolveJob& job, int frame, const JitterSource& jitter);
+/// Headers of a frame with the vectors that names or options tell; none where they do not, with the sentence that
+/// refuses them in `refusal`.
+std::optional<FrameHeaders> told_by_names(const ResolveJob& job, int frame, const JitterSource& jitter,
+                                          std::string* refusal = nullptr);
 
 /// A request that finds no vectors, and so refuses none.
 RoleRequest without_vectors(RoleRequest roles);
