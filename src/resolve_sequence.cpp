@@ -166,14 +166,17 @@ std::vector<Resolved> resolve_two_sided(TwoSidedPass& pass, std::size_t index, S
   return resolved;
 }
 
-std::vector<Resolved> resolve_gather(const Setup& s, const FrameWindow& window, std::size_t index,
+std::vector<Resolved> resolve_gather(const Setup& s, FrameWindow& window, std::size_t index,
                                      std::pair<std::size_t, std::size_t> span, std::vector<SubjectState>& states,
                                      Workers& workers) {
   std::vector<Resolved> resolved;
-  for (std::size_t k = 0; k < states.size(); ++k)
-    resolved.push_back({gather_frame(window, k, index, span.first, span.second, s.gather, states[k].gathered,
-                                     diagnostics_wanted(s.aovs), workers),
+  window[index].repairs.clear();
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    resolved.push_back({gather_frame(window, k, index, span.first, span.second, s.gather, s.job.parameters.repair,
+                                     states[k].gathered, diagnostics_wanted(s.aovs), workers),
                         {}});
+    window[index].repairs.push_back(std::move(states[k].gathered[index].backward_said));
+  }
   return resolved;
 }
 
@@ -187,6 +190,10 @@ Plane<glm::vec4> finish(const Present& present, const History& resolved, const P
 
 void count(FrameReport& report, const SourceFrame& source, const std::vector<Resolved>& resolved, Workers& workers) {
   report.vectors_bad += source.vectors_bad;
+  for (const MotionRepair& repair : source.repairs) {
+    report.vectors += repair.census;
+    for (std::size_t how = 0; how < repair.count.size(); ++how) report.vectors_by[how] += repair.count[how];
+  }
   for (std::size_t k = 0; k < resolved.size(); ++k) {
     report.pixels += source.presents[k].color.window().pixels();
     report.not_finite += source.presents[k].not_finite;
@@ -263,7 +270,8 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     SourceFrame source = read_source_frame(source_options, schedule[index].frame, workers);
     for (std::size_t k = 0; recursive && k < source.presents.size(); ++k) {
       if (schedule[index].restart) states[k].forward = {};
-      follow_motion(source.presents[k], job.parameters.motion, states[k].forward, workers);
+      source.repairs.push_back(
+          follow_motion(source.presents[k], job.parameters.motion, job.parameters.repair, states[k].forward, workers));
     }
     return source;
   };
@@ -327,7 +335,8 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
       std::vector<ResolvedSubject> subjects;
       for (std::size_t k = 0; k < resolved.size(); ++k)
         subjects.push_back({&source.headers.outputs[k].subject, &source.presents[k], &resolved[k].accumulated,
-                            &resolved[k].prediction, &resolved[k].finished});
+                            &resolved[k].prediction, &resolved[k].finished,
+                            k < source.repairs.size() ? &source.repairs[k] : nullptr});
       const FileSet beside = source.pixels.empty() ? read_beside(s, source.headers, workers) : FileSet();
       const FileSet& pixels = source.pixels.empty() ? beside : source.pixels;
       in_frame(scheduled.frame, [&] {

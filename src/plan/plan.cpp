@@ -9,6 +9,7 @@
 #include "plan/cost.h"
 #include "plan/describe_rectify.h"
 #include "plan/gather_plan.h"
+#include "plan/repair_plan.h"
 #include "plan/two_sided_plan.h"
 #include "plan/value.h"
 
@@ -311,6 +312,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   planner.add("read", true, "");
   planner.add("sanitize", true, "pixels that are not finite are kept from spreading");
   planner.motion();
+  plan.passes.push_back(repair_pass(info, parameters, plan));
   if (parameters.accumulator == Accumulator::gather) {
     planner.gather();
   } else {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "motion/repair_motion.h"
 #include "plan/resolve_job.h"
 #include "stages/read_present.h"
 
@@ -16,6 +17,8 @@ struct SourceFrame {
   FileSet pixels;                 ///< as stored; empty where the frame is read again when it is written
   std::vector<Present> presents;  ///< one for each of headers.subjects
   std::size_t vectors_bad = 0;    ///< vectors that cannot be used
+  std::vector<MotionRepair> repairs;  ///< of the vectors to the frame before, one for each present where they were
+                                      ///< tested; filled by the accumulators
 };
 
 /// Names the frame in what a stage has to say: file names alone need not tell it.

@@ -230,6 +230,14 @@ Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubje
   if (aov.name == "removed") fill(of(a.diagnostics.removed));
   if (aov.name == "round-trip") fill(of(a.diagnostics.round_trip));
   if (aov.name == "reject-future") fill(of(a.diagnostics.reject_future));
+  const auto of_repair = [&](auto MotionRepair::*source) {
+    if (!resolved.repair || (resolved.repair->*source).empty())
+      fill([](int, int) { return 0.0f; });
+    else
+      fill(of(resolved.repair->*source));
+  };
+  if (aov.name == "vector-residual") of_repair(&MotionRepair::residual);
+  if (aov.name == "vector-repair") of_repair(&MotionRepair::how);
   if (aov.name == "motion")
     fill([&](int x, int y) {
       const float v = present.motion.empty() ? 0.0f : present.motion.row(y)[x][component];
