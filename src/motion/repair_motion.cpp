@@ -14,6 +14,8 @@ namespace {
 constexpr int kNeighborReach = 8;          // px
 constexpr std::size_t kFewestPixels = 48;  // of a surface, suspicious, before it is looked at
 constexpr std::size_t kNamedPixels = 64;   // of a surface without an id that is worth a row
+constexpr double kLeastApart = 0.75;       // px: less is beyond what whole pixels of light can prove
+constexpr double kLostShare = 0.5;         // of a surface's pixels that must be nowhere before its vectors are dropped
 constexpr double kCameraLead = 1.15;       // misfit of the camera's motion against that found that still wins
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
 
@@ -21,13 +23,14 @@ constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
 struct Surface {
   SurfaceVectors row;
   std::vector<std::size_t> cells;
-  bool asked = false, by_camera = false;
+  bool asked = false, by_camera = false, dropped = false;
   double stored_cost = 0, found_cost = 0, camera_cost = 0;  // over its suspicious cells, by pixels
 };
 
 using Surfaces = std::map<std::uint32_t, Surface>;
 
-Surfaces sum_surfaces(const VectorCells& cells, const Plane<glm::vec2>& motion, const Plane<std::uint32_t>& labels) {
+Surfaces sum_surfaces(const VectorCells& cells, const Plane<glm::vec2>& motion, const Plane<std::uint8_t>& verdict,
+                      const Plane<std::uint32_t>& labels) {
   Surfaces surfaces;
   const Window& w = motion.window();
   Surface* last = nullptr;
@@ -43,6 +46,7 @@ Surfaces sum_surfaces(const VectorCells& cells, const Plane<glm::vec2>& motion, 
         row.stored += glm::dvec2(v);
       else
         ++row.unusable;
+      row.lost += v.x == v.x && VectorVerdict(verdict.at(x, y)) == VectorVerdict::wrong;
     }
   for (auto& [label, s] : surfaces)
     if (s.row.pixels > s.row.unusable) s.row.stored /= double(s.row.pixels - s.row.unusable);
@@ -76,7 +80,7 @@ double cost_of(const SeenPair& pair, const VectorCells& cells, const VectorCell&
 void judge(Surface& s, const SeenPair& pair, const VectorCells& cells, const std::vector<ShiftModel>& models,
            const Plane<std::uint32_t>& labels, const Plane<glm::vec2>& camera, const RepairParameters& parameters) {
   glm::dvec2 found(0);
-  double apart = 0, weight = 0;
+  double apart = 0, weight = 0, suspicious_apart = 0, suspicious_weight = 0;
   for (const std::size_t i : s.cells) {
     const VectorCell& cell = cells.cells[i];
     const ShiftModel& model = models[i];
@@ -87,7 +91,9 @@ void judge(Surface& s, const SeenPair& pair, const VectorCells& cells, const std
     found += n * shift, weight += n;
     if (cell.usable > 0) {
       const glm::dvec2 off = shift - cell.stored;
-      apart += n * std::sqrt(off.x * off.x + off.y * off.y);
+      const double distance = n * std::sqrt(off.x * off.x + off.y * off.y);
+      apart += distance;
+      if (cell.suspicious) suspicious_apart += distance, suspicious_weight += n;
     }
     if (!cell.suspicious) continue;
     s.stored_cost += n * cell.cost;
@@ -96,7 +102,7 @@ void judge(Surface& s, const SeenPair& pair, const VectorCells& cells, const std
       s.camera_cost +=
           n * cost_of(pair, cells, cell, labels, [&](int x, int y) { return glm::dvec2(camera.at(x, y)); });
   }
-  if (!(weight > 0 && s.stored_cost > 0)) return;
+  if (!(weight > 0 && s.stored_cost > 0 && suspicious_apart >= kLeastApart * suspicious_weight)) return;
   s.by_camera = !camera.empty() && s.camera_cost <= std::max(kCameraLead * s.found_cost, 0.1 * s.stored_cost) &&
                 s.camera_cost <= parameters.gain * s.stored_cost;
   s.row.wrong = s.by_camera || s.found_cost <= parameters.gain * s.stored_cost;
@@ -153,7 +159,7 @@ MotionRepair repair_motion(Plane<glm::vec2>& motion, const SeenFrame& here, cons
   // Which surfaces are suspicious as a whole, and where their pixels really went.
   const Plane<std::uint32_t> labels = label_surfaces(pair, motion, workers);
   const VectorCells cells = measure_cells(pair, motion, labels, parameters.misfit_limit, workers);
-  Surfaces surfaces = sum_surfaces(cells, motion, labels);
+  Surfaces surfaces = sum_surfaces(cells, motion, validity.verdict, labels);
   std::vector<char> asked(cells.cells.size(), 0);
   for (auto& [label, s] : surfaces) {
     s.asked = s.row.suspicious >= kFewestPixels && double(s.row.suspicious) >= parameters.share * double(s.row.tested);
@@ -167,9 +173,14 @@ MotionRepair repair_motion(Plane<glm::vec2>& motion, const SeenFrame& here, cons
   workers.for_each(doubted.size(),
                    [&](std::size_t k, int) { judge(*doubted[k], pair, cells, models, labels, camera, parameters); });
 
+  for (auto& [label, s] : surfaces)
+    if (!s.row.wrong && s.row.lost >= kFewestPixels && double(s.row.lost) >= kLostShare * double(s.row.pixels))
+      s.row.wrong = s.dropped = true;
+
   // Pixel by pixel; every pixel reads the vectors as they came.
   const auto replace = [&](int x, int y, const Surface& s) -> Replacement {
     const glm::vec2 v = motion.at(x, y);
+    if (s.dropped) return {glm::vec2(kNowhere), RepairedBy::dropped};
     if (!s.row.wrong) {
       if (v.x == v.x) return {v, RepairedBy::kept};
       if (const glm::vec2 m = vector_of_neighbor(motion, labels, x, y); m.x == m.x) return {m, RepairedBy::neighbor};

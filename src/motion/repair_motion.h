@@ -29,9 +29,10 @@ struct SurfaceVectors {
   std::size_t pixels = 0, tested = 0, suspicious = 0;
   std::size_t zero = 0;            ///< pixels whose vector is zero
   std::size_t unusable = 0;        ///< pixels whose vector is NaN
-  bool wrong = false;              ///< suspicious as a whole, and another motion explains it
-  glm::dvec2 stored{0}, found{0};  ///< mean vectors, pixels; `found` only where wrong
-  double apart = 0;                ///< mean distance between them, pixels
+  std::size_t lost = 0;            ///< pixels inside of the surface whose vector leads where it is not
+  bool wrong = false;              ///< suspicious as a whole and explained by another motion, or lost
+  glm::dvec2 stored{0}, found{0};  ///< mean vectors, pixels; `found` only where another motion was found
+  double apart = 0;                ///< mean distance between them, pixels; 0 where none was found
 };
 
 struct MotionRepair {

@@ -133,7 +133,7 @@ class Planner {
       return asked && info_.frames.size() > 1;
     };
     plan_.use_normal = test(r.normal_angle > 0, "normals by " + short_number(r.normal_angle) + " degrees");
-    plan_.use_id = test(r.id != IdTest::off, r.id == IdTest::soft ? "ids with soft edges" : "ids");
+    if (test(r.id != IdTest::off, r.id == IdTest::soft ? "ids with soft edges" : "ids")) plan_.use_id = true;
     test(r.speed > 0, "lengths of vectors by " + short_number(r.speed) + " px");
     test(r.direction > 0, "directions by " + short_number(r.direction) + " degrees");
     test(r.acceleration > 0, "vectors from " + short_number(std::min(r.acceleration_low, r.acceleration)) + " to " +
