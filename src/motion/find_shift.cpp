@@ -12,6 +12,7 @@ constexpr int kMargin = 4;          // px around a block that belong to its wind
 constexpr int kNear = 8;            // px, every whole shift up to here is tried
 constexpr int kCoarse = 4;          // px, edge of a pixel of the small picture
 constexpr int kCoarseHalf = 4;      // small pixels on each side of a cell that are compared
+constexpr double kPerPixel = 0.03;  // of the stored vectors' misfit, for each pixel that a shift is further off
 constexpr double kExplained = 0.4;  // of the stored vectors' misfit: below this the search ends
 
 struct Pixel {
@@ -94,9 +95,10 @@ class Search {
     return 2 * count >= pixels.size() && count > 0 ? sum / double(count) : double(kWorstMisfit);
   }
 
-  void try_shift(const std::vector<Pixel>& pixels, glm::dvec2 shift, FoundShift& best) const {
+  /// A shift must explain more by `handicap` than what was found before.
+  void try_shift(const std::vector<Pixel>& pixels, glm::dvec2 shift, FoundShift& best, double handicap = 0) const {
     const double c = cost(pixels, shift);
-    if (c < best.cost) best.cost = c, best.shift = shift, best.found = true;
+    if (c + handicap < best.cost) best.cost = c + handicap, best.shift = shift, best.found = true;
   }
 
   FoundShift start(const VectorCell& cell, const Middles& middles) const {
@@ -105,7 +107,8 @@ class Search {
     const glm::dvec2 centre = cell.usable > 0 ? cell.stored : glm::dvec2(0);
     try_shift(pixels, centre, best);
     const double stored = best.cost;
-    for (int ring = 1; ring <= kNear; ++ring) try_ring(pixels, centre, ring, best);
+    // Of what repeats, the nearest copy.
+    for (int ring = 1; ring <= kNear; ++ring) try_ring(pixels, centre, ring, best, kPerPixel * stored * ring);
     const auto explained = [&] { return best.cost <= kExplained * stored; };
     if (const auto m = middles.of.find(cell.label); !explained() && m != middles.of.end()) {
       const Middles::Sum &a = m->second[0], &b = m->second[1];
@@ -119,10 +122,11 @@ class Search {
     return best;
   }
 
-  void try_ring(const std::vector<Pixel>& pixels, glm::dvec2 centre, int ring, FoundShift& best) const {
+  void try_ring(const std::vector<Pixel>& pixels, glm::dvec2 centre, int ring, FoundShift& best,
+                double handicap = 0) const {
     for (int j = -ring; j <= ring; ++j)
       for (int i = -ring; i <= ring; i += std::abs(j) == ring ? 1 : 2 * ring)
-        try_shift(pixels, centre + glm::dvec2(i, j), best);
+        try_shift(pixels, centre + glm::dvec2(i, j), best, handicap);
   }
   void try_around(const std::vector<Pixel>& pixels, glm::dvec2 centre, int radius, FoundShift& best) const {
     try_shift(pixels, centre, best);
@@ -170,25 +174,37 @@ class Search {
     return shifts;
   }
 
-  /// What neighbors found may explain this cell as well, and agreeing with them counts a little.
+  /// What neighbors found may explain this cell as well, and agreeing with them counts: what repeats is told by its
+  /// surroundings.
   FoundShift ask_neighbors(std::size_t index, const std::vector<FoundShift>& before) const {
     const VectorCell& cell = cells_.cells[index];
-    const std::vector<Pixel> pixels = pixels_of(cell);
-    FoundShift best = before[index];
-    const double own = best.cost;
+    std::array<glm::dvec2, 10> candidates;
+    std::size_t count = 0;
+    if (before[index].found) candidates[count++] = before[index].shift;
     for (int j = -1; j <= 1; ++j)
       for (int i = -1; i <= 1; ++i) {
         const VectorCell* neighbor = cells_.find(cell.column + i, cell.row + j, cell.label);
         if (!neighbor || neighbor == &cell) continue;
-        const FoundShift& theirs = before[cells_.index(*neighbor)];
-        if (!theirs.found) continue;
-        const double c = cost(pixels, theirs.shift);
-        if (c + 0.05 * own < best.cost || (c < best.cost && !best.found)) best = {theirs.shift, c, 0, 0, 0, true};
+        if (const FoundShift& theirs = before[cells_.index(*neighbor)]; theirs.found)
+          candidates[count++] = theirs.shift;
       }
+    const std::size_t neighbors = count;
     if (!camera_.empty()) {
       const Window block = cells_.block(cell.column, cell.row);
       const glm::vec2 v = camera_.at((block.x0 + block.x1) / 2, (block.y0 + block.y1) / 2);
-      if (v.x == v.x) try_shift(pixels, glm::dvec2(v), best);
+      if (v.x == v.x) candidates[count++] = glm::dvec2(v);
+    }
+    const std::vector<Pixel> pixels = pixels_of(cell);
+    FoundShift best;
+    double least = 1e30;
+    for (std::size_t k = 0; k < count; ++k) {
+      const glm::dvec2 shift = candidates[k];
+      double apart = 0;
+      for (std::size_t n = 0; n < neighbors; ++n)
+        apart += std::min(std::fabs(shift.x - candidates[n].x) + std::fabs(shift.y - candidates[n].y), double(kNear));
+      const double c = cost(pixels, shift),
+                   score = c + kPerPixel * cell.cost * apart / double(std::max<std::size_t>(1, neighbors));
+      if (score < least) least = score, best = {shift, c, 0, 0, 0, true};
     }
     return best;
   }
@@ -280,7 +296,7 @@ std::vector<FoundShift> find_shifts(const SeenPair& pair, const VectorCells& cel
   const Middles middles = middles_of(pair, cells, asked);
   workers.for_each(list.size(),
                    [&](std::size_t k, int) { found[list[k]] = search.start(cells.cells[list[k]], middles); });
-  for (int round = 0; round < 2; ++round) {
+  for (int round = 0; round < 3; ++round) {
     std::vector<FoundShift> next = found;
     workers.for_each(list.size(), [&](std::size_t k, int) { next[list[k]] = search.ask_neighbors(list[k], found); });
     found = std::move(next);

@@ -16,6 +16,9 @@ constexpr std::size_t kFewestPixels = 48;  // of a surface, suspicious, before i
 constexpr std::size_t kNamedPixels = 64;   // of a surface without an id that is worth a row
 constexpr double kLeastApart = 0.75;       // px: less is beyond what whole pixels of light can prove
 constexpr double kLostShare = 0.5;         // of a surface's pixels that must be nowhere before its vectors are dropped
+constexpr double kPlain = 0.15;            // of the contrast of a surface that a wrong vector's misfit reaches
+constexpr double kTexture = 0.004;         // contrast that tells one place of a surface from another
+constexpr double kChance = 1.5;            // in cells to the power 1/2
 constexpr double kCameraLead = 1.15;       // misfit of the camera's motion against that found that still wins
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
 
@@ -24,7 +27,7 @@ struct Surface {
   SurfaceVectors row;
   std::vector<std::size_t> cells;
   bool asked = false, by_camera = false, dropped = false;
-  double stored_cost = 0, found_cost = 0, camera_cost = 0;  // over its suspicious cells, by pixels
+  double stored_cost = 0, found_cost = 0, camera_cost = 0, contrast = 0;  // over its suspicious cells, by pixels
 };
 
 using Surfaces = std::map<std::uint32_t, Surface>;
@@ -76,10 +79,18 @@ double cost_of(const SeenPair& pair, const VectorCells& cells, const VectorCell&
   return 2 * count >= cell.pixels ? sum / count : double(kWorstMisfit) / 2;
 }
 
+/// Whether the misfit of a surface is more than noise, and is not that of wires without texture, which a sample meets
+/// by chance.
+bool is_plain(const Surface& s) {
+  const bool solid = double(s.row.lost) >= kLostShare / 2 * double(s.row.pixels);
+  return s.stored_cost >= kPlain * s.contrast && (solid || s.contrast >= kTexture * double(s.row.suspicious));
+}
+
 /// Whether another motion explains a surface, and which.
 void judge(Surface& s, const SeenPair& pair, const VectorCells& cells, const std::vector<ShiftModel>& models,
            const Plane<std::uint32_t>& labels, const Plane<glm::vec2>& camera, const RepairParameters& parameters) {
   glm::dvec2 found(0);
+  int suspicious = 0;
   double apart = 0, weight = 0, suspicious_apart = 0, suspicious_weight = 0;
   for (const std::size_t i : s.cells) {
     const VectorCell& cell = cells.cells[i];
@@ -96,16 +107,19 @@ void judge(Surface& s, const SeenPair& pair, const VectorCells& cells, const std
       if (cell.suspicious) suspicious_apart += distance, suspicious_weight += n;
     }
     if (!cell.suspicious) continue;
-    s.stored_cost += n * cell.cost;
+    ++suspicious;
+    s.stored_cost += n * cell.cost, s.contrast += n * cell.contrast;
     s.found_cost += n * cost_of(pair, cells, cell, labels, [&](int x, int y) { return model.at(x, y); });
     if (!camera.empty())
       s.camera_cost +=
           n * cost_of(pair, cells, cell, labels, [&](int x, int y) { return glm::dvec2(camera.at(x, y)); });
   }
   if (!(weight > 0 && s.stored_cost > 0 && suspicious_apart >= kLeastApart * suspicious_weight)) return;
+  // The best of many shifts explains a few cells by chance, so the fewer they are the more it has to explain.
+  const double gain = parameters.gain * std::max(0.0, 1 - kChance / std::sqrt(double(suspicious)));
   s.by_camera = !camera.empty() && s.camera_cost <= std::max(kCameraLead * s.found_cost, 0.1 * s.stored_cost) &&
                 s.camera_cost <= parameters.gain * s.stored_cost;
-  s.row.wrong = s.by_camera || s.found_cost <= parameters.gain * s.stored_cost;
+  s.row.wrong = s.by_camera || (s.found_cost <= gain * s.stored_cost && is_plain(s));
   if (!s.row.wrong) return;
   s.row.found = found / weight;
   s.row.apart = apart / weight;

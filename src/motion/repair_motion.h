@@ -15,7 +15,7 @@ struct RepairParameters {
   RepairMotion mode = RepairMotion::off;
   double misfit_limit = 3;        ///< how many times the misfit of the frame's good vectors makes a cell suspicious
   double share = 0.25;            ///< of a surface's testable pixels that must be suspicious before anything is done
-  double gain = 0.5;              ///< of the misfit that must remain at most with the motion found
+  double gain = 0.6;              ///< of the misfit that must remain at most with the motion found
   int reach = 64;                 ///< px, farthest motion that is searched for, besides the way of a whole object
   double depth_tolerance = 0.15;  ///< relative difference up to which two depths may be one surface
 };

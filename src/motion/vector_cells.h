@@ -43,7 +43,8 @@ inline constexpr float kWorstMisfit = 0.25f;
 
 /// Misfit of pixel (x, y) with pixel (u, v) there; below 0 where nothing can be compared: outside, hidden.
 inline float misfit_at(const SeenPair& pair, int x, int y, int u, int v) {
-  switch (pair.meet(x, y, u, v)) {
+  // One sample in 3x3 is enough to meet a surface: things thinner than a pixel slip through the rest.
+  switch (pair.meet_around(x, y, u, v)) {
     case Meeting::same:
       return std::min(pair.miss(x, y, u, v), kWorstMisfit);
     case Meeting::absent:
