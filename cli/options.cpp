@@ -1,6 +1,7 @@
 // THE table of options. Names, ranges and texts of the parameters come from knobs().
 #include "compare_options.h"
 #include "jitter_options.h"
+#include "layer_options.h"
 #include "measure_options.h"
 #include "option_values.h"
 #include "synth_options.h"
@@ -120,6 +121,10 @@ void add_channel_options(std::vector<Option>& rows) {
   add({"channel-weights", 0, "WHICH", kResolve | kProbe, kAdvanced, group, "By which weights --channels are resolved.",
        word(
            [](auto& s) -> auto& { return s.job.roles.channel_weights; }, kChannelWeights)});
+  add({"samples", 0, "HOW", kResolve | kProbe, kBasic, group,
+       "What is done with several samples in each pixel: numbered parts or layers such as sample.0 and sample.1, or s0 "
+       "and s1, or a picture of N x N times the pixels. They become one color.",
+       samples_value()});
   add({"map", 0, "ROLE=CHANNEL", kInput, kAdvanced, group,
        "Name the channel of a role, where its name does not tell. motion leads to the previous frame, forward to the "
        "next.",
@@ -136,7 +141,7 @@ void add_channel_options(std::vector<Option>& rows) {
        "Where in its pixel each frame was sampled. auto reads the header; a CSV file has the columns frame,jx,jy, "
        "sample position minus pixel center in pixels, y down, as `varve jitter` writes it; patterns are those of "
        "`varve "
-       "help patterns`, with a seed of 0 and a direction of 0.",
+       "help patterns`, with a seed of 0 and a direction of 0. With --samples the columns are frame,sample,jx,jy.",
        text(
            [](auto& s) -> auto& { return s.job.jitter; }, "auto, none, a CSV file or a pattern such as halton23:16")})
       .completes = Completes::files;
@@ -264,6 +269,16 @@ void add_run_options(std::vector<Option>& rows) {
        "Read the pixels of this many frames, spread over the sequence, and print the range of each channel. 0 reads "
        "headers only.",
        number([](auto& s) -> auto& { return s.pixels; }, {0, 1000000})});
+  add({"motion", 0, "", kProbe, kBasic, group,
+       "Hold the motion vectors against the pixels of frames spread over the sequence: which reading of them agrees "
+       "(direction, axes, unit, bias, scale, jitter), what speaks for it, and what is wrong with them.",
+       flag([](auto& s) -> auto& { return s.motion; })});
+  add({"vectors", 0, "PAIRS", kProbe, kBasic, group,
+       "Test the vectors of this many pairs of neighboring frames against the pixels, object by object: which have "
+       "none, "
+       "or wrong ones, and how far off they are. Objects are told by ids, with names where a Cryptomatte manifest has "
+       "them. `varve resolve --repair-motion on` repairs what is wrong.",
+       number([](auto& s) -> auto& { return s.vectors; }, {0, 1000000})});
   add({"json", 0, "", kProbe, kBasic, group, "Print JSON.", flag([](auto& s) -> auto& { return s.json; })});
   add({"dry-run", 'n', "", kResolve, kBasic, group, "Check the input, print the plan and write nothing.",
        flag([](auto& s) -> auto& { return s.dry_run; })});
@@ -299,6 +314,7 @@ std::vector<Option> option_table() {
   add_synth_options(rows);
   add_jitter_options(rows);
   add_channel_options(rows);
+  add_layer_options(rows);
   add_parameter_options(rows);
   add_motion_options(rows);
   add_diagnostic_options(rows);

@@ -10,10 +10,13 @@
 #include "exr/write_frame.h"
 #include "plan/preset.h"
 #include "resolve/accumulate.h"
+#include "stages/combine_resolved.h"
 #include "stages/find_cut.h"
 #include "stages/follow_motion.h"
 #include "stages/frame_window.h"
 #include "stages/gather_frame.h"
+#include "stages/order_layers.h"
+#include "stages/place_samples.h"
 #include "stages/preflight.h"
 #include "stages/previews.h"
 #include "stages/two_sided_pass.h"
@@ -26,7 +29,7 @@ namespace {
 struct SubjectState {
   ForwardMemory forward;
   History history;
-  GatherMemory gathered;
+  std::vector<GatherMemory> gathered;  ///< of each sample
 };
 
 /// Made once, used for every frame.
@@ -55,7 +58,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-Setup set_up(const ResolveJob& job) {
+Setup set_up(const OrderedLayers& ordered) {
+  const ResolveJob& job = ordered.job;
   const JitterSource jitter = parse_jitter_source(job.jitter);
   SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
   check_roles(job, info);
@@ -65,6 +69,7 @@ Setup set_up(const ResolveJob& job) {
                   "--find-cuts goes frame by frame, and this --accumulator looks ahead; name the first frames of shots "
                   "with --cuts, or give --accumulator recursive");
   Plan plan = make_plan(info, job.parameters, job.request, job.threads);
+  if (!ordered.note.empty()) plan.notes.push_back(ordered.note);
   Setup s{job,
           std::move(info),
           std::move(plan),
@@ -106,22 +111,20 @@ bool is_needed(const std::vector<ScheduledFrame>& schedule, std::size_t index, c
 /// The file's pixels as stored, for what stands beside the color when it is written.
 FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& workers) {
   if (!s.job.request.keep_channels) return FileSet(headers.files.size());
-  return in_frame(headers.frame, [&] { return read_files(headers, {.whole_parts = true}, workers); });
+  return in_frame(headers.frame, [&] {
+    FileSet pixels = read_files(headers, {.whole_parts = true}, workers);
+    divide_passed_vectors(headers, pixels.front(), workers);
+    return pixels;
+  });
 }
-
-/// One subject: the present meets the history.
-struct Resolved {
-  Accumulated accumulated;
-  History prediction = {};         ///< only where the diagnostic plane of that name is asked for
-  Plane<glm::vec4> finished = {};  ///< what is written, where that is not what the history keeps
-};
 
 /// Decides whether a frame begins a new shot, before it meets its history: marks it in the schedule if so, and says
 /// why. `before` becomes the trace of this frame.
 void look_for_cut(const SourceFrame& source, FrameTrace& before, ScheduledFrame& scheduled, const ResolveEvents& events,
                   Workers& workers) {
   const Present& present = source.presents.front();
-  const Part& part = source.headers.files.front().parts[std::size_t(part_of(source.headers.subjects.front()))];
+  const Subject& subject = *accumulated_subjects(source.headers.outputs, source.headers.subjects).front();
+  const Part& part = source.headers.files.front().parts[std::size_t(part_of(subject))];
   FrameTrace now = trace_of(present, part, scheduled.frame, workers);
   if (!scheduled.restart) {
     const CutEvidence evidence = judge_cut(before, now, present);
@@ -162,20 +165,40 @@ std::vector<Resolved> resolve_recursive(const Setup& s, const SourceFrame& sourc
 std::vector<Resolved> resolve_two_sided(TwoSidedPass& pass, std::size_t index, SourceFrame& source) {
   std::vector<Resolved> resolved;
   if (std::optional<std::vector<Accumulated>> all = pass.resolve(index, source))
-    for (Accumulated& accumulated : *all) resolved.push_back({std::move(accumulated), {}});
+    for (Accumulated& accumulated : *all) resolved.push_back({std::move(accumulated)});
   return resolved;
 }
 
+/// Places among what is accumulated that are gathered together: samples meet in one pixel, everything else alone.
+std::vector<std::vector<std::size_t>> gathered_together(const FrameHeaders& headers) {
+  std::vector<std::vector<std::size_t>> groups;
+  std::size_t next = 0;
+  for (const ColorOutput& output : headers.outputs) {
+    const std::size_t count = output.after ? output.inputs.size() : 1;
+    for (std::size_t k = next; k < next + count; ++k)
+      if (k > next && output.combine == Combine::samples)
+        groups.back().push_back(k);
+      else
+        groups.push_back({k});
+    next += count;
+  }
+  return groups;
+}
+
+/// What samples make together is the result of the first of them.
 std::vector<Resolved> resolve_gather(const Setup& s, FrameWindow& window, std::size_t index,
                                      std::pair<std::size_t, std::size_t> span, std::vector<SubjectState>& states,
                                      Workers& workers) {
-  std::vector<Resolved> resolved;
-  window[index].repairs.clear();
-  for (std::size_t k = 0; k < states.size(); ++k) {
-    resolved.push_back({gather_frame(window, k, index, span.first, span.second, s.gather, s.job.parameters.repair,
-                                     states[k].gathered, diagnostics_wanted(s.aovs), workers),
-                        {}});
-    window[index].repairs.push_back(std::move(states[k].gathered[index].backward_said));
+  std::vector<Resolved> resolved(states.size());
+  std::vector<MotionRepair>& repairs = window[index].repairs;
+  repairs.clear();
+  repairs.resize(states.size());
+  for (const std::vector<std::size_t>& group : gathered_together(window[index].headers)) {
+    std::vector<GatherMemory>& memory = states[group.front()].gathered;
+    resolved[group.front()].accumulated =
+        gather_frame(window, group, index, span.first, span.second, s.gather, s.job.parameters.repair, memory,
+                     diagnostics_wanted(s.aovs), workers);
+    for (std::size_t k = 0; k < group.size(); ++k) repairs[group[k]] = std::move(memory[k][index].backward_said);
   }
   return resolved;
 }
@@ -188,7 +211,18 @@ Plane<glm::vec4> finish(const Present& present, const History& resolved, const P
   return sharpen(shown.empty() ? resolved.color : shown, resolved.total, parameters.finish.sharpen, workers);
 }
 
+/// What is written, in the order of headers.outputs.
+ResolvedColors colors_to_write(const Setup& s, const SourceFrame& source, const std::vector<Resolved>& resolved,
+                               Workers& workers) {
+  ResolvedColors written = combine_resolved(source, resolved, {s.job.roles, shows_combined(s.aovs)}, workers);
+  for (ResolvedSubject& color : written.colors)
+    color.finished =
+        &written.finished.emplace_back(finish(*color.present, color.accumulated->history, s.job.parameters, workers));
+  return written;
+}
+
 void count(FrameReport& report, const SourceFrame& source, const std::vector<Resolved>& resolved, Workers& workers) {
+  const std::vector<bool> single = are_single_subjects(source.headers);
   report.vectors_bad += source.vectors_bad;
   for (const MotionRepair& repair : source.repairs) {
     report.vectors += repair.census;
@@ -201,9 +235,12 @@ void count(FrameReport& report, const SourceFrame& source, const std::vector<Res
     report.clipped += resolved[k].accumulated.counts.clipped;
     for (std::size_t bit = 0; bit < report.rejected.size(); ++bit)
       report.rejected[bit] += resolved[k].accumulated.counts.rejected[bit];
+    report.opacity_held += source.presents[k].opacity_held;
     if (source.presents[k].companions.empty()) continue;
     report.companions_not_finite += source.presents[k].companions_not_finite;
-    report.lights = report.lights + measure_light_sum(source.presents[k], resolved[k].accumulated.history, workers);
+    if (single[k] &&
+        !resolved[k].accumulated.history.empty())  // what several colors were made of adds up to none of them
+      report.lights = report.lights + measure_light_sum(source.presents[k], resolved[k].accumulated.history, workers);
   }
 }
 
@@ -218,38 +255,44 @@ WriteOptions write_options(const Setup& s, const std::string& frames_used) {
 void write_outputs(const Setup& s, const FrameHeaders& headers, const FileSet& pixels,
                    const std::vector<ResolvedSubject>& resolved, const std::string& frames_used, FrameReport& report,
                    Workers& workers) {
-  const FileHeader& source = headers.files.front();
+  const FileHeader &source = headers.files.front(), &stored = files_on_disk(headers).front();
   const WriteOptions options = write_options(s, frames_used);
   const std::vector<const Aov*> none;
   const bool apart = s.job.diagnostics.has_value();
   FileOutput color =
       resolved_parts(source, pixels.front(), resolved, apart ? none : s.aovs, s.job.request.keep_channels,
-                     s.out_of_working_space ? &*s.out_of_working_space : nullptr, workers);
+                     headers.passed_on, s.out_of_working_space ? &*s.out_of_working_space : nullptr, workers);
   for (OutputPart& part : color.parts)
     if (!part.copy_chunks) part.compression = s.job.compression;
   report.half_overflows = color.half_overflows;
+  place_samples(headers, color.parts);
   if (apart) {
-    const FileOutput diagnostics = diagnostic_parts(source, resolved, s.aovs, workers);
-    write_frame(s.job.diagnostics->path(headers.frame), source, diagnostics.parts, options, workers);
+    FileOutput diagnostics = diagnostic_parts(source, resolved, s.aovs, workers);
+    place_samples(headers, diagnostics.parts);
+    write_frame(s.job.diagnostics->path(headers.frame), stored, diagnostics.parts, options, workers);
   }
   if (!s.job.preview_folder.empty())
     write_previews(s.job.preview_folder, headers.frame, resolved, s.aovs, s.display ? &*s.display : nullptr, workers);
   // The resolved frame goes last: once it is there, everything that belongs to it is.
-  write_frame(report.path, source, color.parts, options, workers);
+  write_frame(report.path, stored, color.parts, options, workers);
 }
 
 }  // namespace
 
-Plan plan_sequence(const ResolveJob& job, SequenceInfo& info) {
-  Setup s = set_up(job);
+Plan plan_sequence(const ResolveJob& asked, SequenceInfo& info) {
+  const OrderedLayers ordered = order_layers(asked);
+  const ResolveJob& job = ordered.job;
+  Setup s = set_up(ordered);
   check_outputs(job, schedule_frames(job, s.info, s.hash));
   info = std::move(s.info);
   return std::move(s.plan);
 }
 
-ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& events) {
-  // Probe and plan: headers only.
-  Setup s = set_up(job);
+ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& events) {
+  // Probe and plan: headers only, unless depth says which layer is in front.
+  const OrderedLayers ordered = order_layers(asked);
+  const ResolveJob& job = ordered.job;
+  Setup s = set_up(ordered);
   if (events.planned) events.planned(s.info, s.plan);
 
   // Preflight: what will be written, and whether it can be.
@@ -257,7 +300,7 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
   check_outputs(job, schedule);
 
   Workers workers(job.threads);
-  std::vector<SubjectState> states(s.info.first.subjects.size());
+  std::vector<SubjectState> states(accumulated_subjects(s.info.first.outputs, s.info.first.subjects).size());
   FrameTrace trace;
   const bool recursive = job.parameters.accumulator == Accumulator::recursive;
   const SourceOptions source_options{s.job,
@@ -265,7 +308,8 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
                                      s.plan,
                                      s.jitter,
                                      s.into_working_space ? &*s.into_working_space : nullptr,
-                                     s.reach.back_to_restart};
+                                     s.reach.back_to_restart,
+                                     shows_combined(s.aovs)};
   const auto read = [&](std::size_t index) {
     SourceFrame source = read_source_frame(source_options, schedule[index].frame, workers);
     for (std::size_t k = 0; recursive && k < source.presents.size(); ++k) {
@@ -323,24 +367,19 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
                                      : gathers ? resolve_gather(s, window, i, {first, last}, states, workers)
                                                : resolve_recursive(s, source, scheduled, states, workers);
     if (summary.stopped) break;
+    hold_layers(source, resolved, workers);
     count(report, source, resolved, workers);
-    if (scheduled.write)
-      for (std::size_t k = 0; k < resolved.size(); ++k)
-        resolved[k].finished = finish(source.presents[k], resolved[k].accumulated.history, job.parameters, workers);
+    const bool writes = scheduled.write && !scheduled.complete;
+    const ResolvedColors written = writes ? colors_to_write(s, source, resolved, workers) : ResolvedColors();
     report.resolve_seconds = clock.lap();
     if (stop()) break;
 
     // Write, and remember.
-    if (scheduled.write && !scheduled.complete) {
-      std::vector<ResolvedSubject> subjects;
-      for (std::size_t k = 0; k < resolved.size(); ++k)
-        subjects.push_back({&source.headers.outputs[k].subject, &source.presents[k], &resolved[k].accumulated,
-                            &resolved[k].prediction, &resolved[k].finished,
-                            k < source.repairs.size() ? &source.repairs[k] : nullptr});
+    if (writes) {
       const FileSet beside = source.pixels.empty() ? read_beside(s, source.headers, workers) : FileSet();
       const FileSet& pixels = source.pixels.empty() ? beside : source.pixels;
       in_frame(scheduled.frame, [&] {
-        write_outputs(s, source.headers, pixels, subjects, frames_used(schedule, i, s.reach), report, workers);
+        write_outputs(s, source.headers, pixels, written.colors, frames_used(schedule, i, s.reach), report, workers);
       });
       report.write_seconds = clock.lap();
       report.written = true;

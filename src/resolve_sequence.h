@@ -25,6 +25,7 @@ struct FrameReport {
   std::size_t pixels = 0, not_finite = 0, vectors_bad = 0, restarted = 0, clipped = 0, half_overflows = 0;
   MotionCensus vectors;                     ///< of the vectors that were tested (--repair-motion)
   std::array<std::size_t, 5> vectors_by{};  ///< of these, pixels by RepairedBy; under check: what would be done
+  std::size_t opacity_held = 0;             ///< pixels of layers whose alpha or transmittance lay beyond 0..1
   std::size_t companions_not_finite = 0;    ///< values of --channels that were NaN or infinite
   LightSum lights;                          ///< of the colors that have companions; no pixels without
   std::string restart;                      ///< why the history was dropped; empty if it was not

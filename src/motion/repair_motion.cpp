@@ -18,6 +18,8 @@ constexpr double kLeastApart = 0.75;       // px: less is beyond what whole pixe
 constexpr double kLostShare = 0.5;         // of a surface's pixels that must be nowhere before its vectors are dropped
 constexpr double kPlain = 0.15;            // of the contrast of a surface that a wrong vector's misfit reaches
 constexpr double kTexture = 0.004;         // contrast that tells one place of a surface from another
+constexpr std::size_t kSample = 16;        // cells
+constexpr double kSampleGain = 0.8;        // of the misfit of the sample that may remain
 constexpr double kChance = 1.5;            // in cells to the power 1/2
 constexpr double kCameraLead = 1.15;       // misfit of the camera's motion against that found that still wins
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
@@ -153,6 +155,35 @@ glm::vec2 vector_of_neighbor(const Plane<glm::vec2>& motion, const Plane<std::ui
   return found;
 }
 
+/// Cells of a suspicious surface that are searched before the rest is: a few, spread evenly.
+std::vector<std::size_t> sample_of(const Surface& s, const VectorCells& cells) {
+  std::vector<std::size_t> suspicious, sample;
+  for (const std::size_t i : s.cells)
+    if (cells.cells[i].suspicious) suspicious.push_back(i);
+  const std::size_t count = std::min(suspicious.size(), kSample);
+  for (std::size_t k = 0; k < count; ++k) sample.push_back(suspicious[(2 * k + 1) * suspicious.size() / (2 * count)]);
+  return sample;
+}
+
+/// Turns away from surfaces of which no motion explains even a sample of cells: noise, wires, and veils that samples
+/// meet by chance are suspicious, and searching all of them would take long.
+void keep_explained(Surfaces& surfaces, const SeenPair& pair, const VectorCells& cells,
+                    const Plane<std::uint32_t>& labels, const Plane<glm::vec2>& camera,
+                    const RepairParameters& parameters, Workers& workers) {
+  std::vector<char> asked(cells.cells.size(), 0);
+  for (const auto& [label, s] : surfaces)
+    if (s.asked)
+      for (const std::size_t i : sample_of(s, cells)) asked[i] = 1;
+  const std::vector<FoundShift> found = find_shifts(pair, cells, asked, labels, camera, parameters.reach, workers);
+  for (auto& [label, s] : surfaces) {
+    if (!s.asked) continue;
+    double stored = 0, explained = 0;
+    for (const std::size_t i : sample_of(s, cells))
+      stored += cells.cells[i].cost, explained += std::min(found[i].cost, cells.cells[i].cost);
+    s.asked = explained <= kSampleGain * stored;
+  }
+}
+
 struct Replacement {
   glm::vec2 vector;
   RepairedBy how;
@@ -174,11 +205,12 @@ MotionRepair repair_motion(Plane<glm::vec2>& motion, const SeenFrame& here, cons
   const Plane<std::uint32_t> labels = label_surfaces(pair, motion, workers);
   const VectorCells cells = measure_cells(pair, motion, labels, parameters.misfit_limit, workers);
   Surfaces surfaces = sum_surfaces(cells, motion, validity.verdict, labels);
-  std::vector<char> asked(cells.cells.size(), 0);
-  for (auto& [label, s] : surfaces) {
+  for (auto& [label, s] : surfaces)
     s.asked = s.row.suspicious >= kFewestPixels && double(s.row.suspicious) >= parameters.share * double(s.row.tested);
+  keep_explained(surfaces, pair, cells, labels, camera, parameters, workers);
+  std::vector<char> asked(cells.cells.size(), 0);
+  for (const auto& [label, s] : surfaces)
     for (const std::size_t i : s.cells) asked[i] = s.asked;
-  }
   const std::vector<FoundShift> found = find_shifts(pair, cells, asked, labels, camera, parameters.reach, workers);
   const std::vector<ShiftModel> models = fit_shifts(cells, found, workers);
   std::vector<Surface*> doubted;

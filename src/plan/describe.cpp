@@ -88,8 +88,9 @@ std::string sequence_text(const SequenceInfo& info) {
 
 std::string files_text(const SequenceInfo& info, const Plan& plan) {
   std::string text;
-  for (int f = 0; f < int(info.first.files.size()); ++f) {
-    const FileHeader& file = info.first.files[std::size_t(f)];
+  const std::vector<FileHeader>& files = files_on_disk(info.first);
+  for (int f = 0; f < int(files.size()); ++f) {
+    const FileHeader& file = files[std::size_t(f)];
     text += "\n" + file.path + "\n";
     for (int p = 0; p < int(file.parts.size()); ++p) {
       const Part& part = file.parts[std::size_t(p)];
@@ -208,6 +209,8 @@ std::string roles_of(const SequenceInfo& info, ChannelRef ref) {
     if (s.normal) take((*s.normal)[0], "normal.x"), take((*s.normal)[1], "normal.y"), take((*s.normal)[2], "normal.z");
     take(s.reactive, "reactive");
     take(s.responsive, "responsive");
+    if (s.transmittance && std::ranges::find(s.transmittance->channels, ref) != s.transmittance->channels.end())
+      role.append(role.empty() ? "" : "+").append("transmittance");
     if (s.backward) take((*s.backward)[0], "motion.x"), take((*s.backward)[1], "motion.y");
     if (s.forward) take((*s.forward)[0], "forward.x"), take((*s.forward)[1], "forward.y");
     if (role.empty()) continue;

@@ -9,7 +9,9 @@
 #include "plan/cost.h"
 #include "plan/describe_rectify.h"
 #include "plan/gather_plan.h"
+#include "plan/layers_plan.h"
 #include "plan/repair_plan.h"
+#include "plan/samples_plan.h"
 #include "plan/two_sided_plan.h"
 #include "plan/value.h"
 
@@ -276,6 +278,8 @@ class Planner {
         for (const ChannelRef& axis : *subject.normal) read(axis);
       if (plan_.use_reactive) read(subject.reactive);
       if (plan_.use_responsive) read(subject.responsive);
+      if (subject.transmittance)
+        for (const ChannelRef& channel : subject.transmittance->channels) read(channel);
       const std::optional<VectorChannels>& vector = subject.backward ? subject.backward : subject.forward;
       if (vector) read((*vector)[0]), read((*vector)[1]);
       if (plan_.use_forward && subject.forward) read((*subject.forward)[0]), read((*subject.forward)[1]);
@@ -311,8 +315,10 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   Planner planner(info, parameters, output, plan);
   planner.add("read", true, "");
   planner.add("sanitize", true, "pixels that are not finite are kept from spreading");
+  for (PlannedPass& pass : samples_passes(info, parameters, plan.notes)) plan.passes.push_back(std::move(pass));
   planner.motion();
   plan.passes.push_back(repair_pass(info, parameters, plan));
+  if (!composites_after(info) && info.first.sample_jitter.empty()) plan.passes.push_back(layers_pass(info));
   if (parameters.accumulator == Accumulator::gather) {
     planner.gather();
   } else {
@@ -325,6 +331,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
     planner.weights();
     planner.blend();
   }
+  if (composites_after(info)) plan.passes.push_back(layers_pass(info));
   planner.companions();
   planner.fallback();
   planner.finish();
@@ -338,6 +345,10 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   for (const Subject& subject : info.first.subjects)
     for (const std::string& note : subject.notes)
       plan.notes.push_back((subject.view.empty() ? "" : "view " + subject.view + ": ") + note);
+  for (const ColorOutput& made : info.first.outputs)
+    for (const std::string& note : made.subject.notes)
+      if (made.combine != Combine::alone)
+        plan.notes.push_back((made.subject.view.empty() ? "" : "view " + made.subject.view + ": ") + note);
   plan.bytes = estimate_bytes(info, plan, parameters, output);
   plan.seconds_per_frame = estimate_seconds(info, plan, parameters, output, threads > 0 ? threads : Workers().count());
   return plan;

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <map>
+#include <span>
+#include <vector>
 
 #include "gather/gather.h"
 #include "stages/frame_window.h"
@@ -24,10 +26,13 @@ struct GatherFrame {
 using GatherMemory = std::map<std::size_t, GatherFrame>;
 
 /// Resolves the frame at `index` from the frames of `window` between `first` and `last`, all held; with a gain, the
-/// outermost frame on each side only serves the pilot of its neighbor. Vectors are tested and repaired as far as asked
-/// for, once for each frame and direction; memory[index].backward_said tells of those to the frame before.
-Accumulated gather_frame(const FrameWindow& window, std::size_t subject, std::size_t index, std::size_t first,
-                         std::size_t last, const GatherParameters& parameters, const RepairParameters& repair,
-                         GatherMemory& memory, const DiagnosticsWanted& wanted, Workers& workers);
+/// outermost frame on each side only serves the pilot of its neighbor. Several subjects are samples of the same pixels:
+/// all of them make one result. `memory` has one entry for each. Vectors are tested and repaired
+/// as far as asked for, once for each frame and direction; memory[s][index].backward_said tells of those to the frame
+/// before.
+Accumulated gather_frame(const FrameWindow& window, std::span<const std::size_t> subjects, std::size_t index,
+                         std::size_t first, std::size_t last, const GatherParameters& parameters,
+                         const RepairParameters& repair, std::vector<GatherMemory>& memory,
+                         const DiagnosticsWanted& wanted, Workers& workers);
 
 }  // namespace varve

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/version.h"
 #include "exr/write_frame.h"
+#include "plan/layers_plan.h"
 #include "plan/preset.h"
 
 namespace varve {
@@ -85,12 +86,22 @@ void drop_finished(std::vector<ScheduledFrame>& schedule) {
 /// What was asked for; a sidecar by its numbers, since they may change under its name.
 std::string describe_jitter(const std::string& jitter) {
   std::string rows;
-  for (const auto& [frame, offset] : parse_jitter_source(jitter).table) {
-    char row[80];
+  const JitterSource source = parse_jitter_source(jitter);
+  char row[100];
+  for (const auto& [frame, offset] : source.table) {
     std::snprintf(row, sizeof row, "%d:%.17g,%.17g ", frame, offset.x, offset.y);
     rows += row;
   }
+  for (const auto& [place, offset] : source.further) {
+    std::snprintf(row, sizeof row, "%d.%d:%.17g,%.17g ", place.first, place.second, offset.x, offset.y);
+    rows += row;
+  }
   return rows.empty() ? jitter : "table:" + hash_of(rows);
+}
+
+std::string samples_text(const SampleRequest& samples) {
+  return (samples.mode == SampleMode::each ? "each" : "resolve") +
+         (samples.grid > 0 ? ",grid:" + std::to_string(samples.grid) : std::string());
 }
 
 std::filesystem::path canonical(const std::string& path) { return std::filesystem::weakly_canonical(path); }
@@ -156,9 +167,11 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   if (job.find_cuts) text += " find-cuts=on";
   text += " jitter=" + describe_jitter(job.jitter) + " convention=" + job.roles.convention;
   for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
+  text += layers_text(job.roles.combine_layers, info);
   for (const std::string& channels : job.roles.channels) text += " channels=" + channels;
   if (!job.roles.channels.empty())
     text += std::string(" channel-weights=") + (job.roles.channel_weights == ChannelWeights::own ? "own" : "beauty");
+  if (job.roles.samples.mode != SampleMode::off) text += " samples=" + samples_text(job.roles.samples);
   for (const auto& [role, channel] : job.roles.map) text += " map:" + role + "=" + channel;
   for (const Subject& subject : info.first.subjects) {
     const MotionEncoding& e = subject.backward ? subject.backward_encoding : subject.forward_encoding;
@@ -207,14 +220,19 @@ void check_roles(const ResolveJob& job, const SequenceInfo& info) {
       throw Failure(ExitCode::usage, "'" + role.text() + "' is one file for " + std::to_string(info.frames.size()) +
                                          " frames; put the frame number in, as in motion.####.exr");
   if (info.frames.size() < 2 || job.roles.convention == "none") return;
-  for (const Subject& subject : info.first.subjects)
-    if (!subject.backward && !subject.forward)
+  const auto moves = [](const Subject& s) { return s.backward || s.forward; };
+  // A layer of several may be a still; a note of it says so.
+  for (const ColorOutput& output : info.first.outputs)
+    if (std::none_of(output.inputs.begin(), output.inputs.end(),
+                     [&](std::size_t i) { return moves(info.first.subjects[i]); })) {
+      const Subject& subject = info.first.subjects[output.inputs.front()];
       throw Failure(
           ExitCode::inconsistent,
           "'" + info.first.files.front().path + "' (frame " + std::to_string(info.first.frame) +
               ") has no motion vectors for " + (subject.layer.empty() ? "its color" : "layer '" + subject.layer + "'") +
               "; render them, name them with --map motion.x=CHANNEL or --motion-file, or say --convention none to "
               "resolve as if nothing moved");
+    }
 }
 
 void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& schedule) {

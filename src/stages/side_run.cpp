@@ -16,7 +16,7 @@ void pass_subjects(SideRun& run, SourceFrame& source, const SharedVectors& vecto
   source.repairs.resize(source.presents.size());
   for (std::size_t k = 0; k < source.presents.size(); ++k) {
     Present& present = source.presents[k];
-    const FrameVectors* neighbor = run.neighbor ? &(*run.neighbor)[k] : nullptr;
+    const SideVectors* neighbor = run.neighbor ? &(*run.neighbor)[k] : nullptr;
     MotionRepair said;
     DilatedMotion dilated = motion_to(run.side, (*vectors)[k], neighbor, parameters, said, workers);
     if (run.side == Side::past) source.repairs[k] = std::move(said);
@@ -29,14 +29,14 @@ void pass_subjects(SideRun& run, SourceFrame& source, const SharedVectors& vecto
   run.neighbor = vectors;
 }
 
-SeenFrame view(const FrameVectors& frame) {
+SeenFrame view(const SideVectors& frame) {
   return SeenPlanes::seen_frame(frame.light, frame.depth, frame.marks.id, frame.jitter);
 }
 
 }  // namespace
 
 SharedVectors take_vectors(SourceFrame& source, const RepairParameters& repair, Workers& workers) {
-  auto vectors = std::make_shared<std::vector<FrameVectors>>();
+  auto vectors = std::make_shared<std::vector<SideVectors>>();
   for (Present& present : source.presents)
     vectors->push_back({std::move(present.motion),
                         std::move(present.forward),
@@ -47,7 +47,7 @@ SharedVectors take_vectors(SourceFrame& source, const RepairParameters& repair, 
   return vectors;
 }
 
-DilatedMotion motion_to(Side side, const FrameVectors& here, const FrameVectors* neighbor, const Parameters& parameters,
+DilatedMotion motion_to(Side side, const SideVectors& here, const SideVectors* neighbor, const Parameters& parameters,
                         MotionRepair& said, Workers& workers) {
   const bool past = side == Side::past;
   const Plane<glm::vec2>&own = past ? here.backward : here.forward, &opposite = past ? here.forward : here.backward;

@@ -13,7 +13,7 @@ namespace varve {
 
 /// Vectors of one subject as its file has them, and what is known of the surfaces that they move; empty where there is
 /// nothing.
-struct FrameVectors {
+struct SideVectors {
   Plane<glm::vec2> backward, forward;
   Plane<float> depth;
   SurfaceMarks marks;
@@ -21,7 +21,7 @@ struct FrameVectors {
   glm::dvec2 jitter{0};
 };
 /// One for each subject of a frame; shared by the runs that pass it.
-using SharedVectors = std::shared_ptr<const std::vector<FrameVectors>>;
+using SharedVectors = std::shared_ptr<const std::vector<SideVectors>>;
 
 /// Takes the vectors out of the presents of a frame that was read as stored.
 SharedVectors take_vectors(SourceFrame& source, const RepairParameters& repair, Workers& workers);
@@ -35,7 +35,7 @@ enum class Side { past, future };
 /// are NaN. `neighbor` may be null at the end of a run. Without any vectors the motion is empty: at rest. Vectors are
 /// tested and repaired as far as asked for; `said` gets what the test said of this frame's own vectors, and no planes
 /// where it was the neighbor's that were tested.
-DilatedMotion motion_to(Side side, const FrameVectors& here, const FrameVectors* neighbor, const Parameters& parameters,
+DilatedMotion motion_to(Side side, const SideVectors& here, const SideVectors* neighbor, const Parameters& parameters,
                         MotionRepair& said, Workers& workers);
 
 /// What one direction carries. Nothing of it depends on frames before the first that it was given.

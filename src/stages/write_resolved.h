@@ -42,10 +42,10 @@ std::string aov_channel(const Aov& aov, const Subject& subject, bool several_lay
 
 /// The source's parts with the resolved color and its companions in place. With `keep`, other channels stand beside
 /// them and parts without any are copied; without, only resolved channels are written. `aovs` are added to each
-/// subject's part.
+/// subject's part. `passed_on` says what of the source is used up.
 FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
                           const std::vector<ResolvedSubject>& subjects, const std::vector<const Aov*>& aovs, bool keep,
-                          const ColorConversion* out_of_working_space, Workers& workers);
+                          const PassedOn& passed_on, const ColorConversion* out_of_working_space, Workers& workers);
 
 /// Only the diagnostic planes, in the parts of their subjects.
 FileOutput diagnostic_parts(const FileHeader& source, const std::vector<ResolvedSubject>& subjects,
@@ -54,6 +54,9 @@ FileOutput diagnostic_parts(const FileHeader& source, const std::vector<Resolved
 /// One component of a diagnostic plane as float, for pictures and for the writer. `reject` is a sum of bits, exact in
 /// float.
 Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubject& resolved, Workers& workers);
+
+/// Whether one of these shows how several layers or samples became one color.
+bool shows_combined(const std::vector<const Aov*>& aovs);
 
 /// Which planes accumulate() must fill for these.
 DiagnosticsWanted diagnostics_wanted(const std::vector<const Aov*>& aovs);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "paths.h"
 #include "support/refusal.h"
 
 namespace varve {

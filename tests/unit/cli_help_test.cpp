@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "diagnose/aov.h"
+#include "paths.h"
 #include "plan/preset.h"
 #include "progress.h"
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "paths.h"
 #include "stages/comparison_text.h"
 #include "stages/page_pictures.h"
 #include "stages/page_plot.h"

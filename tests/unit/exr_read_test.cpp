@@ -1,5 +1,6 @@
 // read_header and read_channels against the stock OpenEXR reader.
 #include "exr_test_files.h"
+#include "paths.h"
 
 namespace varve::test {
 namespace {

@@ -13,6 +13,7 @@
 
 #include "exr/container.h"
 #include "exr_test_files.h"
+#include "paths.h"
 
 namespace {
 /// A type of attribute that no reader knows.

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "help.h"
 #include "option.h"
+#include "paths.h"
 
 namespace varve::cli {
 namespace {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "paths.h"
 #include "support/refusal.h"
 
 namespace varve {

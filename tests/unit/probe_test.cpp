@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
+#include "paths.h"
 #include "plan/describe.h"
 #include "support/refusal.h"
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -99,7 +100,9 @@ TEST_F(RepairMotionTest, AnObjectWithoutVectorsFollowsItsPixels) {
     const auto row =
         std::find_if(said.surfaces.begin(), said.surfaces.end(), [](const SurfaceVectors& s) { return s.wrong; });
     ASSERT_NE(row, said.surfaces.end());
-    if (ids) EXPECT_EQ(row->label, 7u);
+    if (ids) {
+      EXPECT_EQ(row->label, 7u);
+    }
     EXPECT_EQ(row->zero, row->pixels);
     EXPECT_NEAR(row->found.x, -kStep.x, 0.25);
     EXPECT_NEAR(row->found.y, -kStep.y, 0.25);
@@ -237,8 +240,9 @@ TEST_F(RepairMotionTest, SurvivesAnything) {
       for (int y = w.y0; y < w.y1; ++y)
         for (int x = w.x0; x < w.x1; ++x) {
           EXPECT_TRUE(said.residual.at(x, y) >= 0 && said.residual.at(x, y) <= 1);
-          if (said.how.at(x, y) == std::uint8_t(RepairedBy::search))
+          if (said.how.at(x, y) == std::uint8_t(RepairedBy::search)) {
             EXPECT_TRUE(std::isfinite(motion.at(x, y).x) && std::isfinite(motion.at(x, y).y));
+          }
         }
     }
 }
@@ -259,8 +263,9 @@ TEST_F(RepairMotionTest, ResidualsAreThoseOfTheTwin) {
           const reference::Judged twin = reference::judge_vector(here.view(ids, depths), there.view(ids, depths), 0.15,
                                                                  x, y, v, there.motion, 0.1);
           EXPECT_NEAR(double(said.residual.at(x, y)), twin.residual, 1e-6) << x << " " << y;
-          if (std::fabs(twin.residual - 0.1) > 1e-5)
+          if (std::fabs(twin.residual - 0.1) > 1e-5) {
             EXPECT_EQ(VectorVerdict(said.verdict.at(x, y)), twin.verdict) << x << " " << y << " " << known;
+          }
         }
     }
 }

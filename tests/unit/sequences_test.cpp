@@ -1,5 +1,7 @@
 // The committed sequences are what sequences/README.md says they are.
 
+#include "paths.h"
+
 #include <gtest/gtest.h>
 
 #include <ImfChannelList.h>

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/error.h"
+#include "paths.h"
 #include "synth/hash.h"
 #include "synth/render.h"
 #include "synth/scenes.h"
