@@ -37,8 +37,8 @@ Judged judge_vector(const SeenFrame& here, const SeenFrame& there, double depth_
   const bool ids = here.id && there.id, depths = here.depth && there.depth;
   const double m = middle_of(*here.light, *there.light);
   const auto toned = [&](double light) { return light / (light + m); };
-  const int u = int(std::floor(x + 0.5 + double(vector.x) + here.jitter.x - there.jitter.x));
-  const int v = int(std::floor(y + 0.5 + double(vector.y) + here.jitter.y - there.jitter.y));
+  const int u = int(std::floor(x + 0.5 + double(vector.x) + (here.jitter.x - there.jitter.x)));
+  const int v = int(std::floor(y + 0.5 + double(vector.y) + (here.jitter.y - there.jitter.y)));
   const Window& w = there.light->window();
   if (!w.contains(u, v)) return {0, VectorVerdict::untestable};
   bool same = false, hidden = false;
