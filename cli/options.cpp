@@ -294,6 +294,12 @@ void add_run_options(std::vector<Option>& rows) {
        "Hold the motion vectors against the pixels of frames spread over the sequence: which reading of them agrees "
        "(direction, axes, unit, bias, scale, jitter), what speaks for it, and what is wrong with them.",
        flag([](auto& s) -> auto& { return s.motion; })});
+  add({"vectors", 0, "PAIRS", kProbe, kBasic, group,
+       "Test the vectors of this many pairs of neighboring frames against the pixels, object by object: which have "
+       "none, "
+       "or wrong ones, and how far off they are. Objects are told by ids, with names where a Cryptomatte manifest has "
+       "them. `varve resolve --repair-motion on` repairs what is wrong.",
+       number([](auto& s) -> auto& { return s.vectors; }, {0, 1000000})});
   add({"json", 0, "", kProbe, kBasic, group, "Print JSON.", flag([](auto& s) -> auto& { return s.json; })});
   add({"dry-run", 'n', "", kResolve, kBasic, group, "Check the input, print the plan and write nothing.",
        flag([](auto& s) -> auto& { return s.dry_run; })});

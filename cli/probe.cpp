@@ -8,6 +8,7 @@
 #include "plan/describe.h"
 #include "stages/probe_motion.h"
 #include "stages/settle_layers.h"
+#include "stages/vector_table.h"
 
 namespace varve::cli {
 
@@ -43,8 +44,16 @@ int run_probe(Settings& settings) {
     Workers workers(job.threads);
     motion = probe_motion(settings.job, info.frames, {}, workers);
   }
-  const std::string text = settings.json ? describe_json(info, plan, statistics, motion ? motion_json(*motion) : "")
-                                         : describe_text(info, plan, statistics) + (motion ? motion_text(*motion) : "");
+  std::optional<VectorTable> vectors;
+  if (settings.vectors > 0) {
+    Workers workers(job.threads);
+    vectors = inspect_vectors(job, info, plan, jitter, settings.vectors, workers);
+  }
+  std::string text = settings.json ? describe_json(info, plan, statistics, motion ? motion_json(*motion) : "")
+                                   : describe_text(info, plan, statistics) + (motion ? motion_text(*motion) : "");
+  if (vectors && !settings.json) text += vector_table_text(*vectors);
+  if (vectors && settings.json)  // one more member of the object
+    text.insert(text.rfind('}'), ",\"vectors\":" + vector_table_json(*vectors));
   std::fputs(text.c_str(), stdout);
   if (!text.ends_with('\n')) std::fputc('\n', stdout);
   return int(ExitCode::done);

@@ -53,6 +53,16 @@ std::string residual_text(const LightSum& lights) {
   return text;
 }
 
+/// Share of the vectors that were tested and found wrong; empty where none was.
+std::string repaired_text(const FrameReport& report) {
+  const std::size_t wrong = report.vectors.pixels - report.vectors_by[std::size_t(RepairedBy::kept)];
+  if (report.vectors.pixels == 0 || wrong == 0) return "";
+  char text[80];
+  std::snprintf(text, sizeof text, ", %.2g %% of the vectors wrong",
+                100.0 * double(wrong) / double(report.vectors.pixels));
+  return text;
+}
+
 JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
   line.number("frame", report.frame)
       .text("path", report.path)
@@ -66,6 +76,13 @@ JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
       .number("vectors_bad", double(report.vectors_bad))
       .number("by_camera", double(report.by_camera))
       .number("lens_added", double(report.lens_added))
+      .number("vectors_tested", double(report.vectors.pixels))
+      .number("vectors_one_way", double(report.vectors.one_way))
+      .number("vectors_doubtful", double(report.vectors.verdicts[std::size_t(VectorVerdict::doubtful)]))
+      .number("vectors_by_neighbor", double(report.vectors_by[std::size_t(RepairedBy::neighbor)]))
+      .number("vectors_by_camera", double(report.vectors_by[std::size_t(RepairedBy::camera)]))
+      .number("vectors_by_search", double(report.vectors_by[std::size_t(RepairedBy::search)]))
+      .number("vectors_dropped", double(report.vectors_by[std::size_t(RepairedBy::dropped)]))
       .number("restarted", double(report.restarted))
       .number("clipped", double(report.clipped))
       .number("half_overflows", double(report.half_overflows))
@@ -115,9 +132,11 @@ std::string frame_line(const FrameReport& report, int done, int total) {
           count_text(report.deep_repaired, "deep samples put right or left out: no depth, ZBack before Z, bad alpha");
     if (add_up(report.lights)) line += residual_text(report.lights);
     if (report.vectors_bad > 0) line += count_text(report.vectors_bad, "unusable vectors");
-    if (report.by_camera > 0) line += share_text(report.by_camera, report.vectors, "of the vectors by the camera");
-    if (report.lens_added > 0) line += share_text(report.lens_added, report.vectors, "of the vectors with zoom added");
+    if (report.by_camera > 0) line += share_text(report.by_camera, report.with_vectors, "of the vectors by the camera");
+    if (report.lens_added > 0)
+      line += share_text(report.lens_added, report.with_vectors, "of the vectors with zoom added");
     if (report.opacity_held > 0) line += count_text(report.opacity_held, "layer opacities held within 0 and 1");
+    line += repaired_text(report);
     if (report.half_overflows > 0) line += count_text(report.half_overflows, "values beyond half held at 65504");
   }
   return line + ", PROGRESS: " + std::to_string(percent(done, total)) + "%";

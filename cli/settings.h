@@ -26,6 +26,7 @@ struct Settings {
 
   int pixels = 0;  ///< frames whose pixels probe measures
   bool json = false;
+  int vectors = 0;  ///< pairs of frames whose vectors probe tests object by object
   bool motion = false;  ///< whether probe holds the vectors against the pixels
 
   CompareJob compare;          ///< shares frames, cuts, roles and threads with `job`

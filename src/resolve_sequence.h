@@ -8,6 +8,7 @@
 
 #include "base/reject.h"
 #include "base/version.h"
+#include "motion/repair_motion.h"
 #include "plan/plan.h"
 #include "plan/resolve_job.h"
 #include "resolve/light_sum.h"
@@ -22,15 +23,17 @@ struct FrameReport {
   double read_seconds = 0, resolve_seconds = 0, write_seconds = 0;
   std::array<std::size_t, kRejectBits> rejected{};  ///< pixels with each bit of the diagnostic plane `reject`
   std::size_t pixels = 0, not_finite = 0, vectors_bad = 0, restarted = 0, clipped = 0, half_overflows = 0;
-  std::size_t vectors = 0;                ///< pixels of the subjects that have them
-  std::size_t by_camera = 0;              ///< pixels whose vector is that of a camera
-  std::size_t lens_added = 0;             ///< pixels to whose vector zoom or lens shift was added
-  std::size_t opacity_held = 0;           ///< pixels of layers whose alpha or transmittance lay beyond 0..1
-  std::size_t companions_not_finite = 0;  ///< values of --channels that were NaN or infinite
-  std::size_t deep_samples = 0;           ///< of deep parts that were flattened
-  std::size_t deep_repaired = 0;          ///< of these left out or put right: no depth, ZBack before Z, bad alpha
-  LightSum lights;                        ///< of the colors that have companions; no pixels without
-  std::string restart;                    ///< why the history was dropped; empty if it was not
+  std::size_t with_vectors = 0;             ///< pixels of the subjects that have vectors
+  std::size_t by_camera = 0;                ///< pixels whose vector is that of a camera
+  std::size_t lens_added = 0;               ///< pixels to whose vector zoom or lens shift was added
+  MotionCensus vectors;                     ///< of the vectors that were tested (--repair-motion)
+  std::array<std::size_t, 5> vectors_by{};  ///< of these, pixels by RepairedBy; under check: what would be done
+  std::size_t opacity_held = 0;             ///< pixels of layers whose alpha or transmittance lay beyond 0..1
+  std::size_t companions_not_finite = 0;    ///< values of --channels that were NaN or infinite
+  std::size_t deep_samples = 0;             ///< of deep parts that were flattened
+  std::size_t deep_repaired = 0;            ///< of these left out or put right: no depth, ZBack before Z, bad alpha
+  LightSum lights;                          ///< of the colors that have companions; no pixels without
+  std::string restart;                      ///< why the history was dropped; empty if it was not
 };
 
 struct ResolveSummary {

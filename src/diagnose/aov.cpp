@@ -33,6 +33,13 @@ constexpr Aov kAovs[] = {
      kByTwoSided | kByGather},
     {"reject-future", "", PixelType::uint32, "bits", "0 to 8191", "turbo", 0, 8191,
      "Why the future was not used: the bits of the plane reject, seen from the other side of time.", kByTwoSided},
+    {"vector-residual", "", PixelType::float32, "fraction", "0 to 1", "inferno", 0, 0.25,
+     "What speaks against the vector to the frame before, as it came: how far the light lies outside of what is seen "
+     "where it leads, on a scale where 1 is all there is; 1 where the surface is not there. 0 where nothing can be "
+     "compared, and under --repair-motion off."},
+    {"vector-repair", "", PixelType::uint32, "code", "0 to 4", "turbo", 0, 4,
+     "What became of the vector to the frame before: 0 kept, 1 that of a neighbor on the same surface, 2 the camera's, "
+     "3 found in the pixels, 4 dropped. Under --repair-motion check, what would become of it."},
     {"variance", "", PixelType::float32, "luminance squared", "0 and up", "inferno", 0, 0.01,
      "Predicted variance of the pixel's luminance: the spread of its samples times the sum of their squared weights. "
      "The "

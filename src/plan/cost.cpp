@@ -1,4 +1,5 @@
 #include "plan/cost.h"
+#include "plan/repair_plan.h"
 
 #include <algorithm>
 #include <set>
@@ -206,10 +207,13 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
     if (gathers) histories += pixels * gather_bytes_per_pixel(parameters);
     if (two_sided)  // the past of the next block too, three frames' vectors
       histories += pixels * (24 + 3 * 20 + waiting_bytes_per_pixel(parameters, output));
+    const bool tests_vectors = plan.use_motion && parameters.repair.mode != RepairMotion::off;
+    if (tests_vectors && !gathers) histories += pixels * 12;  // what the next frame's vectors are tested against
     const bool in_space = parameters.rectify.box != Box::none && parameters.rectify.space != BoxSpace::rgb;
     at_work = std::max(at_work,
                        pixels * (16 + extra + 16 * companions + (plan.use_motion ? 8 : 0) + (plan.use_depth ? 4 : 0) +
-                                 (in_space ? 16 : 0) + diagnostic_bytes_per_pixel(output, parameters.accumulator)) +
+                                 (in_space ? 16 : 0) + (tests_vectors ? repair_bytes_per_pixel(parameters) : 0) +
+                                 diagnostic_bytes_per_pixel(output, parameters.accumulator)) +
                            window_bytes(parameters.rectify, window_of(info, subject)));
   }
   return kBaseBytes + raw + deep_bytes(info) + histories + at_work;
@@ -238,6 +242,7 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
   }
   const RecursiveParameters& recursive = parameters.recursive;
   double per_pixel = kConvert + kSanitize + double(diagnostic_bytes) * (kDiagnostic + kZip.encode);
+  if (plan.use_motion) per_pixel += repair_nanoseconds(parameters);
   if (parameters.accumulator == Accumulator::gather) {
     if (parameters.finish.sharpen > 0) per_pixel += kSharpen;
     per_pixel += gather_nanoseconds(parameters);

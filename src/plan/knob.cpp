@@ -64,6 +64,24 @@ std::vector<Knob> knobs() {
        word(
            [](auto& p) -> auto& { return p.motion.camera; }, kCameraUses)},
 
+      {"repair-motion", "WORD", motion, basic, "What is done about vectors that are wrong.",
+       word(
+           [](auto& p) -> auto& { return p.repair.mode; }, kRepairs)},
+      {"repair-limit", "FACTOR", motion, expert,
+       "Misfit of an 8x8 block that makes its vectors suspicious, as a multiple of the misfit of the frame's good "
+       "vectors. Small values suspect noise, large ones overlook slow things.",
+       number([](auto& p) -> auto& { return p.repair.misfit_limit; }, {1, 1000})},
+      {"repair-share", "SHARE", motion, expert,
+       "Share of the testable pixels of an object that must be suspicious before its vectors are replaced. Shadows and "
+       "highlights that slide over an object touch a small part of it.",
+       number([](auto& p) -> auto& { return p.repair.share; }, {0, 1})},
+      {"repair-gain", "SHARE", motion, expert,
+       "Share of the misfit that may remain with the motion found instead. 1 replaces at the least advantage, 0 never.",
+       number([](auto& p) -> auto& { return p.repair.gain; }, {0, 1})},
+      {"repair-reach", "PIXELS", motion, expert,
+       "Farthest motion that is searched for; a thing with an id of its own is found at any distance.",
+       number([](auto& p) -> auto& { return p.repair.reach; }, {8, 1024})},
+
       {"accumulator", "WORD", history, basic, "How frames are combined.",
        word(
            [](auto& p) -> auto& { return p.accumulator; }, kAccumulators)},

@@ -49,6 +49,11 @@ constexpr Word<bool> kSwitches[] = {
     {"on", true, "no overshoot beside bright edges"},
     {"off", false, "the filter as it is"},
 };
+constexpr Word<RepairMotion> kRepairs[] = {
+    {"off", RepairMotion::off, "vectors are believed"},
+    {"check", RepairMotion::check, "vectors are tested and what is wrong is told; nothing is changed"},
+    {"on", RepairMotion::on, "vectors that the pixels refute for a whole surface are replaced, or dropped"},
+};
 constexpr Word<Disocclusion> kDisocclusions[] = {
     {"window", Disocclusion::window, "only where the previous position lies outside the data window"},
     {"depth", Disocclusion::depth, "also where another surface lay there; needs depth"},

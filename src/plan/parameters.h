@@ -5,6 +5,7 @@
 
 #include "gather/gather.h"
 #include "motion/motion.h"
+#include "motion/repair_motion.h"
 #include "resolve/accumulate.h"
 #include "resolve/fallback.h"
 #include "resolve/sharpen.h"
@@ -16,6 +17,7 @@ struct Parameters {
   std::string preset = "salvi";  ///< where the values came from before the user changed any
   Accumulator accumulator = Accumulator::recursive;
   MotionParameters motion;
+  RepairParameters repair;
   RecursiveParameters recursive;
   RectifyParameters rectify;
   FallbackParameters fallback;

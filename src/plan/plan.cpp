@@ -12,6 +12,7 @@
 #include "plan/describe_rectify.h"
 #include "plan/gather_plan.h"
 #include "plan/layers_plan.h"
+#include "plan/repair_plan.h"
 #include "plan/samples_plan.h"
 #include "plan/two_sided_plan.h"
 #include "plan/value.h"
@@ -144,7 +145,7 @@ class Planner {
       return asked && info_.frames.size() > 1;
     };
     plan_.use_normal = test(r.normal_angle > 0, "normals by " + short_number(r.normal_angle) + " degrees");
-    plan_.use_id = test(r.id != IdTest::off, r.id == IdTest::soft ? "ids with soft edges" : "ids");
+    if (test(r.id != IdTest::off, r.id == IdTest::soft ? "ids with soft edges" : "ids")) plan_.use_id = true;
     test(r.speed > 0, "lengths of vectors by " + short_number(r.speed) + " px");
     test(r.direction > 0, "directions by " + short_number(r.direction) + " degrees");
     test(r.acceleration > 0, "vectors from " + short_number(std::min(r.acceleration_low, r.acceleration)) + " to " +
@@ -328,6 +329,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   for (PlannedPass& pass : samples_passes(info, parameters, plan.notes)) plan.passes.push_back(std::move(pass));
   planner.motion();
   plan.passes.push_back(camera_pass(info, parameters, plan));
+  plan.passes.push_back(repair_pass(info, parameters, plan));
   if (!composites_after(info) && info.first.sample_jitter.empty()) plan.passes.push_back(layers_pass(info));
   if (parameters.accumulator == Accumulator::gather) {
     planner.gather();

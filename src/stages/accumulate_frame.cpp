@@ -56,14 +56,20 @@ std::vector<Resolved> accumulate_two_sided(TwoSidedPass& pass, std::size_t index
   return resolved;
 }
 
-std::vector<Resolved> accumulate_gather(const AccumulatorOptions& options, const FrameWindow& window, std::size_t index,
+std::vector<Resolved> accumulate_gather(const AccumulatorOptions& options, FrameWindow& window, std::size_t index,
                                         std::pair<std::size_t, std::size_t> span, std::vector<SubjectState>& states,
                                         Workers& workers) {
   std::vector<Resolved> resolved(states.size());
-  for (const std::vector<std::size_t>& group : gathered_together(window[index].headers))
+  std::vector<MotionRepair>& repairs = window[index].repairs;
+  repairs.clear();
+  repairs.resize(states.size());
+  for (const std::vector<std::size_t>& group : gathered_together(window[index].headers)) {
+    std::vector<GatherMemory>& memory = states[group.front()].gathered;
     resolved[group.front()].accumulated =
-        gather_frame(window, group, index, span.first, span.second, options.gather, states[group.front()].gathered,
+        gather_frame(window, group, index, span.first, span.second, options.gather, options.parameters.repair, memory,
                      diagnostics_wanted(options.aovs), workers);
+    for (std::size_t k = 0; k < group.size(); ++k) repairs[group[k]] = std::move(memory[k][index].backward_said);
+  }
   return resolved;
 }
 

@@ -34,7 +34,7 @@ std::vector<Resolved> accumulate_two_sided(TwoSidedPass& pass, std::size_t index
 
 /// From the frames between span.first and span.second, all held by the window. What samples of the same pixels make
 /// together is the result of the first of them, and the others are empty.
-std::vector<Resolved> accumulate_gather(const AccumulatorOptions& options, const FrameWindow& window, std::size_t index,
+std::vector<Resolved> accumulate_gather(const AccumulatorOptions& options, FrameWindow& window, std::size_t index,
                                         std::pair<std::size_t, std::size_t> span, std::vector<SubjectState>& states,
                                         Workers& workers);
 

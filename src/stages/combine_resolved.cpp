@@ -85,7 +85,10 @@ ResolvedColors combine_resolved(const SourceFrame& source, const std::vector<Res
                                 const CombineOptions& options, Workers& workers) {
   ResolvedColors all;
   const auto write = [&](const Subject& subject, const Present& present, const Resolved& r) {
-    all.colors.push_back({&subject, &present, &r.accumulated, &r.prediction, nullptr});
+    all.colors.push_back({&subject, &present, &r.accumulated, &r.prediction, nullptr, nullptr, nullptr});
+  };
+  const auto tell_repair = [&](std::size_t k) {
+    if (k < source.repairs.size()) all.colors.back().repair = &source.repairs[k];
   };
   std::size_t next = 0;     // place among what was accumulated
   std::size_t compare = 0;  // place of the color that the next one may be compared with
@@ -108,8 +111,11 @@ ResolvedColors combine_resolved(const SourceFrame& source, const std::vector<Res
     }
     compare = all.colors.size();
     write(output.subject, present, made);
-    for (std::size_t i = 0; output.write_inputs && output.after && i < output.inputs.size(); ++i)
+    if (!output.after) tell_repair(first);
+    for (std::size_t i = 0; output.write_inputs && output.after && i < output.inputs.size(); ++i) {
       write(source.headers.subjects[output.inputs[i]], source.presents[first + i], resolved[first + i]);
+      tell_repair(first + i);
+    }
   }
   return all;
 }

@@ -4,19 +4,31 @@
 
 namespace varve {
 
-void follow_motion(Present& present, const MotionParameters& parameters, ForwardMemory& memory, Workers& workers) {
+MotionRepair follow_motion(Present& present, const MotionParameters& parameters, const RepairParameters& repair,
+                           ForwardMemory& memory, Workers& workers) {
   Plane<glm::vec2> motion = std::move(present.motion);
-  if (motion.empty() && present.forward.empty()) return;
+  if (motion.empty() && present.forward.empty()) return {};
+  SeenPlanes seen = seen_planes(present, repair, workers);
+  const bool test = !seen.empty() && !memory.seen.empty();
+  MotionRepair said;
   if (motion.empty()) {
+    if (test && !memory.motion.empty()) {
+      said = repair_motion(memory.motion, memory.seen.view(), seen.view(), {}, {}, repair, workers);
+      said.residual = {}, said.how = {};  // of the pixels of the frame before
+    }
     motion = invert_forward_motion(memory.motion, memory.depth, present.forward);
-    memory = {std::move(present.forward), present.depth.clone()};
+    memory.motion = std::move(present.forward), memory.depth = present.depth.clone();
+  } else if (test) {
+    said = repair_motion(motion, seen.view(), memory.seen.view(), {}, {}, repair, workers);
   }
+  memory.seen = std::move(seen);
   DilatedMotion followed = dilate_motion(std::move(motion), present.depth, parameters.dilation, workers,
                                          {std::move(present.id), std::move(present.normal)});
   present.motion = std::move(followed.motion);
   present.depth = std::move(followed.depth);
   present.id = std::move(followed.marks.id);
   present.normal = std::move(followed.marks.normal);
+  return said;
 }
 
 }  // namespace varve

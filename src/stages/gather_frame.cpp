@@ -19,6 +19,7 @@ struct SubjectFrames {
   std::size_t subject, sample;
   std::size_t first, last;  // held, of one shot
   const GatherParameters& parameters;
+  const RepairParameters& repair;
   GatherMemory& memory;
   SurfaceTest test;
   Workers& workers;
@@ -36,18 +37,37 @@ struct SubjectFrames {
     return s;
   }
 
+  SeenFrame seen(std::size_t i) const {
+    SeenPlanes& planes = memory[i].seen;
+    if (planes.empty()) planes.light = light_of(present(i).color, workers);
+    return SeenPlanes::seen_frame(planes.light, present(i).depth, present(i).id,
+                                  present(i).jitter.value_or(glm::dvec2(0)));
+  }
+
   /// Vectors to the neighbor `to`, from the file or turned round from the neighbor's own.
   const Plane<glm::vec2>* vectors(std::size_t i, std::size_t to) const {
     if (to < first || to > last) return nullptr;
     const bool future = to > i;
     const Plane<glm::vec2>&stored = future ? present(i).forward : present(i).motion,
           &back = future ? present(to).motion : present(to).forward;
-    if (back.empty() || (!stored.empty() && !(parameters.return_tolerance > 0)))
-      return stored.empty() ? nullptr : &stored;
+    const bool tests = repair.mode != RepairMotion::off;
+    if (stored.empty() && back.empty()) return nullptr;
+    if (!stored.empty() && !tests && (back.empty() || !(parameters.return_tolerance > 0))) return &stored;
     Plane<glm::vec2>& made = future ? memory[i].forward : memory[i].backward;
-    if (made.empty() && !stored.empty())
-      made = trusted_vectors(bare(i), stored, bare(to), back, test, parameters.return_tolerance, workers);
-    if (made.empty()) made = opposite_vectors(bare(i), bare(to), back, test, kRoundTrip, workers);
+    if (!made.empty()) return &made;
+    if (stored.empty()) {
+      made = opposite_vectors(bare(i), bare(to), tests ? *vectors(to, i) : back, test, kRoundTrip, workers);
+      return &made;
+    }
+    Plane<glm::vec2> own = stored.clone();
+    MotionRepair& said = future ? memory[i].forward_said : memory[i].backward_said;
+    if (tests) said = repair_motion(own, seen(i), seen(to), back, {}, repair, workers);
+    if (!back.empty() && parameters.return_tolerance > 0) {
+      made = trusted_vectors(bare(i), own, bare(to), back, test, parameters.return_tolerance, workers);
+      keep_repaired(made, own, said, workers);
+    } else {
+      made = std::move(own);
+    }
     return &made;
   }
 
@@ -112,14 +132,15 @@ void check_size(const SourceFrame& frame, const Window& window) {
 
 Accumulated gather_frame(const FrameWindow& window, std::span<const std::size_t> subjects, std::size_t index,
                          std::size_t first, std::size_t last, const GatherParameters& parameters,
-                         std::vector<GatherMemory>& memory, const DiagnosticsWanted& wanted, Workers& workers) {
+                         const RepairParameters& repair, std::vector<GatherMemory>& memory,
+                         const DiagnosticsWanted& wanted, Workers& workers) {
   memory.resize(subjects.size());
   std::vector<SubjectFrames> samples;
   const SurfaceTest test = surface_test(window[index].presents[subjects.front()]);
   for (std::size_t s = 0; s < subjects.size(); ++s) {
     for (std::size_t i = first; i <= last; ++i) check_size(window[i], window[i].presents[subjects[s]].color.window());
     std::erase_if(memory[s], [&](const auto& entry) { return entry.first < first || entry.first > last; });
-    samples.push_back({window, subjects[s], s, first, last, parameters, memory[s], test, workers});
+    samples.push_back({window, subjects[s], s, first, last, parameters, repair, memory[s], test, workers});
   }
   const std::size_t begin = back(index, parameters.reach, first), end = ahead(index, parameters.reach, last);
   if (parameters.gain)

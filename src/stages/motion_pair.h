@@ -22,8 +22,8 @@ struct FrameVectors {
 
 /// What of a frame is read besides color and vectors.
 struct VectorNeeds {
-  bool marks = false;                  ///< depth and id
-  bool vectors = true;                 ///< all layers that may hold vectors
+  bool marks = false;                       ///< depth and id
+  bool vectors = true;                      ///< all layers that may hold vectors
   std::optional<VectorChannels> only = {};  ///< or just these, as a layer of two channels
 };
 

@@ -13,10 +13,13 @@ template <class Step>
 void pass_subjects(SideRun& run, SourceFrame& source, const SharedVectors& vectors, const Parameters& parameters,
                    Workers& workers, Step step) {
   run.states.resize(source.presents.size());
+  source.repairs.resize(source.presents.size());
   for (std::size_t k = 0; k < source.presents.size(); ++k) {
     Present& present = source.presents[k];
-    const FrameVectors* neighbor = run.neighbor ? &(*run.neighbor)[k] : nullptr;
-    DilatedMotion dilated = motion_to(run.side, (*vectors)[k], neighbor, parameters, workers);
+    const SideVectors* neighbor = run.neighbor ? &(*run.neighbor)[k] : nullptr;
+    MotionRepair said;
+    DilatedMotion dilated = motion_to(run.side, (*vectors)[k], neighbor, parameters, said, workers);
+    if (run.side == Side::past) source.repairs[k] = std::move(said);
     present.motion = std::move(dilated.motion);
     present.depth = std::move(dilated.depth);
     present.id = std::move(dilated.marks.id);
@@ -26,20 +29,26 @@ void pass_subjects(SideRun& run, SourceFrame& source, const SharedVectors& vecto
   run.neighbor = vectors;
 }
 
+SeenFrame view(const SideVectors& frame) {
+  return SeenPlanes::seen_frame(frame.light, frame.depth, frame.marks.id, frame.jitter);
+}
+
 }  // namespace
 
-SharedVectors take_vectors(SourceFrame& source) {
-  auto vectors = std::make_shared<std::vector<FrameVectors>>();
+SharedVectors take_vectors(SourceFrame& source, const RepairParameters& repair, Workers& workers) {
+  auto vectors = std::make_shared<std::vector<SideVectors>>();
   for (Present& present : source.presents)
     vectors->push_back({std::move(present.motion),
                         std::move(present.forward),
                         std::move(present.depth),
-                        {std::move(present.id), std::move(present.normal)}});
+                        {std::move(present.id), std::move(present.normal)},
+                        repair.mode == RepairMotion::off ? Plane<float>() : light_of(present.color, workers),
+                        present.jitter.value_or(glm::dvec2(0))});
   return vectors;
 }
 
-DilatedMotion motion_to(Side side, const FrameVectors& here, const FrameVectors* neighbor, const Parameters& parameters,
-                        Workers& workers) {
+DilatedMotion motion_to(Side side, const SideVectors& here, const SideVectors* neighbor, const Parameters& parameters,
+                        MotionRepair& said, Workers& workers) {
   const bool past = side == Side::past;
   const Plane<glm::vec2>&own = past ? here.backward : here.forward, &opposite = past ? here.forward : here.backward;
   SurfaceMarks marks{here.marks.id.clone(), here.marks.normal.clone()};
@@ -47,18 +56,29 @@ DilatedMotion motion_to(Side side, const FrameVectors& here, const FrameVectors*
 
   const Plane<glm::vec2> none;
   const Plane<glm::vec2>& back = !neighbor ? none : past ? neighbor->forward : neighbor->backward;
-  Plane<glm::vec2> motion;
+  const bool test = neighbor && !here.light.empty();
+  Plane<glm::vec2> motion, repaired;
   if (!own.empty()) {
     motion = own.clone();
+    if (test) said = repair_motion(motion, view(here), view(*neighbor), back, none, parameters.repair, workers);
+    if (test) repaired = motion.clone();
   } else {
     motion = Plane<glm::vec2>(opposite.window(), 0, glm::vec2(std::numeric_limits<float>::quiet_NaN()));
+    Plane<glm::vec2> leading_here = back.clone();
+    if (test && !back.empty()) {
+      said = repair_motion(leading_here, view(*neighbor), view(here), none, none, parameters.repair, workers);
+      said.residual = {}, said.how = {};  // of the neighbor's pixels
+    }
     if (!back.empty())
-      motion =
-          invert_motion(back, neighbor->depth, here.depth, parameters.recursive.depth_tolerance, std::move(motion));
+      motion = invert_motion(leading_here, neighbor->depth, here.depth, parameters.recursive.depth_tolerance,
+                             std::move(motion));
   }
   // Before dilation: what leads nowhere may follow a neighbor that does not.
   const double tolerance = parameters.two_sided.return_tolerance;
-  if (tolerance > 0 && !back.empty()) reject_one_way_motion(motion, back, tolerance, workers);
+  if (tolerance > 0 && !back.empty() && !own.empty()) {
+    reject_one_way_motion(motion, back, tolerance, workers);
+    if (!repaired.empty()) keep_repaired(motion, repaired, said, workers);
+  }
   return dilate_motion(std::move(motion), here.depth, parameters.motion.dilation, workers, std::move(marks));
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "motion/repair_motion.h"
 #include "plan/resolve_job.h"
 #include "stages/cameras_around.h"
 #include "stages/move_by_camera.h"
@@ -19,8 +20,10 @@ struct SourceFrame {
   std::vector<Present> presents;       ///< one for each of accumulated_subjects(): a subject, or several combined
   std::vector<CamerasAround> cameras;  ///< one for each of headers.subjects; empty without
   CameraVectors by_camera;
-  std::size_t vectors_bad = 0;  ///< vectors that cannot be used
-  DeepCounts deep;              ///< samples of deep parts that were flattened
+  std::size_t vectors_bad = 0;        ///< vectors that cannot be used
+  DeepCounts deep;                    ///< samples of deep parts that were flattened
+  std::vector<MotionRepair> repairs;  ///< of the vectors to the frame before, one for each present where they were
+                                      ///< tested; filled by the accumulators
 };
 
 /// Names the frame in what a stage has to say: file names alone need not tell it.

@@ -41,7 +41,7 @@ bool TwoSidedPass::walk_back(std::size_t last) {
   for (std::size_t i = last + 1; i-- > begin_;) {
     if (stop_()) return false;
     SourceFrame source = read_(i);
-    const SharedVectors vectors = take_vectors(source);
+    const SharedVectors vectors = take_vectors(source, options_.parameters.repair, workers_);
     std::vector<StrictSide> sides = pass_frame(run, source, vectors, options_, workers_);
     if (i < end_ && is_wanted(i)) futures_.put(i, std::move(sides));
   }
@@ -54,7 +54,7 @@ bool TwoSidedPass::advance_to(std::size_t index) {
   for (std::size_t i = from; i < index; ++i) {
     if (stop_()) return false;
     SourceFrame source = read_(i);
-    const SharedVectors vectors = take_vectors(source);
+    const SharedVectors vectors = take_vectors(source, options_.parameters.repair, workers_);
     for (std::optional<Past>* past : {&past_, &next_past_})
       if (*past && (*past)->next == i) {
         pass_frame((*past)->run, source, vectors, options_, workers_);
@@ -67,7 +67,7 @@ bool TwoSidedPass::advance_to(std::size_t index) {
 std::optional<std::vector<Accumulated>> TwoSidedPass::resolve(std::size_t index, SourceFrame& source) {
   if (!(index >= begin_ && index < end_) && !start_block(index)) return std::nullopt;
   if (!advance_to(index)) return std::nullopt;
-  const SharedVectors vectors = take_vectors(source);
+  const SharedVectors vectors = take_vectors(source, options_.parameters.repair, workers_);
   if (next_past_) {
     pass_frame(next_past_->run, source, vectors, options_, workers_);
     ++next_past_->next;

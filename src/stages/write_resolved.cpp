@@ -261,6 +261,14 @@ Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubje
   if (aov.name == "removed") fill(of(a.diagnostics.removed));
   if (aov.name == "round-trip") fill(of(a.diagnostics.round_trip));
   if (aov.name == "reject-future") fill(of(a.diagnostics.reject_future));
+  const auto of_repair = [&](auto MotionRepair::*source) {
+    if (!resolved.repair || (resolved.repair->*source).empty())
+      fill([](int, int) { return 0.0f; });
+    else
+      fill(of(resolved.repair->*source));
+  };
+  if (aov.name == "vector-residual") of_repair(&MotionRepair::residual);
+  if (aov.name == "vector-repair") of_repair(&MotionRepair::how);
   // 0 where nothing was combined.
   const auto fill_combined = [&](const Plane<float>& source) {
     fill([&](int x, int y) { return source.empty() ? 0.0f : source.row(y)[x]; });

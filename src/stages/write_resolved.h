@@ -10,6 +10,7 @@
 #include "exr/color_space.h"
 #include "exr/read_frame.h"
 #include "exr/write_frame.h"
+#include "motion/repair_motion.h"
 #include "resolve/accumulate.h"
 
 namespace varve {
@@ -22,6 +23,7 @@ struct ResolvedSubject {
   const History* prediction = nullptr;         ///< only where the plane `prediction` is asked for
   const Plane<glm::vec4>* finished = nullptr;  ///< what is written, where that is not what the history keeps
   const Plane<float>* difference = nullptr;    ///< to what the other --layers mode gives; only where it is asked for
+  const MotionRepair* repair = nullptr;        ///< what was said of the vectors; null or without planes: nothing
 
   const Plane<glm::vec4>& color() const {
     return finished && !finished->empty() ? *finished : accumulated->history.color;
