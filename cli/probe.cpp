@@ -1,26 +1,48 @@
 // varve probe.
+#include <algorithm>
 #include <cstdio>
 #include <vector>
 
 #include "base/error.h"
 #include "commands.h"
 #include "plan/describe.h"
+#include "stages/check_jitter.h"
+#include "stages/sequence_facts.h"
 
 namespace varve::cli {
+namespace {
+
+/// One more section, or one more member at the end of the object.
+void add_to(std::string& text, bool json, const char* member, const std::string& value, const std::string& section) {
+  if (json)
+    text.insert(text.rfind('}'), std::string(",\"") + member + "\":" + value);
+  else
+    text += section;
+}
+
+}  // namespace
 
 int run_probe(Settings& settings) {
   finish_job(settings);
   const ResolveJob& job = settings.job;
-  const JitterSource jitter = parse_jitter_source(job.jitter);
+  JitterSource jitter = parse_jitter_source(job.jitter);
+  Workers workers(job.threads);
+  if (jitter.kind == JitterSource::Kind::pixels) jitter = measured_jitter(job, workers);
   const SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
   const Plan plan = make_plan(info, job.parameters, job.request, job.threads);
   std::vector<ChannelStatistics> statistics;
-  if (settings.pixels > 0) {
-    Workers workers(job.threads);
-    statistics = measure_pixels(info, job.input, job.roles, jitter, settings.pixels, workers);
+  if (settings.pixels > 0) statistics = measure_pixels(info, job.input, job.roles, jitter, settings.pixels, workers);
+  std::string text = settings.json ? describe_json(info, plan, statistics) : describe_text(info, plan, statistics);
+  if (settings.jitter_frames > 0) {
+    std::vector<int> frames = info.frames;
+    frames.resize(std::min(frames.size(), std::size_t(settings.jitter_frames)));
+    const JitterCheck check = check_jitter(job, frames, jitter, workers);
+    add_to(text, settings.json, "jitter_check", jitter_check_json(check), jitter_check_text(check));
   }
-  const std::string text =
-      settings.json ? describe_json(info, plan, statistics) : describe_text(info, plan, statistics);
+  if (settings.facts) {
+    const SequenceFacts facts = find_facts(job, info.frames, {}, workers);
+    add_to(text, settings.json, "facts", facts_json(facts), facts_text(facts));
+  }
   std::fputs(text.c_str(), stdout);
   if (!text.ends_with('\n')) std::fputc('\n', stdout);
   return int(ExitCode::done);

@@ -10,12 +10,13 @@
 #include "exr/write_frame.h"
 #include "plan/preset.h"
 #include "resolve/accumulate.h"
-#include "stages/find_cut.h"
+#include "stages/check_jitter.h"
 #include "stages/follow_motion.h"
 #include "stages/frame_window.h"
 #include "stages/gather_frame.h"
 #include "stages/preflight.h"
 #include "stages/previews.h"
+#include "stages/sequence_facts.h"
 #include "stages/two_sided_pass.h"
 #include "stages/write_resolved.h"
 
@@ -56,15 +57,17 @@ class Stopwatch {
 };
 
 Setup set_up(const ResolveJob& job) {
-  const JitterSource jitter = parse_jitter_source(job.jitter);
+  JitterSource jitter = parse_jitter_source(job.jitter);
+  if (jitter.kind == JitterSource::Kind::pixels) {
+    Workers workers(job.threads);
+    jitter = measured_jitter(job, workers);
+  }
   SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
   check_roles(job, info);
-  // By the time that its pixels show a cut, a frame has met those after it already.
-  if (job.find_cuts && job.parameters.accumulator != Accumulator::recursive)
-    throw Failure(ExitCode::usage,
-                  "--find-cuts goes frame by frame, and this --accumulator looks ahead; name the first frames of shots "
-                  "with --cuts, or give --accumulator recursive");
   Plan plan = make_plan(info, job.parameters, job.request, job.threads);
+  if (job.find_cuts)
+    plan.passes.push_back(
+        {"find cuts", true, "before all else, color and vectors of every frame within reach are read once more"});
   Setup s{job,
           std::move(info),
           std::move(plan),
@@ -116,24 +119,21 @@ struct Resolved {
   Plane<glm::vec4> finished = {};  ///< what is written, where that is not what the history keeps
 };
 
-/// Decides whether a frame begins a new shot, before it meets its history: marks it in the schedule if so, and says
-/// why. `before` becomes the trace of this frame.
-void look_for_cut(const SourceFrame& source, FrameTrace& before, ScheduledFrame& scheduled, const ResolveEvents& events,
-                  Workers& workers) {
-  const Present& present = source.presents.front();
-  const Part& part = source.headers.files.front().parts[std::size_t(part_of(source.headers.subjects.front()))];
-  FrameTrace now = trace_of(present, part, scheduled.frame, workers);
-  if (!scheduled.restart) {
-    const CutEvidence evidence = judge_cut(before, now, present);
-    if (evidence.cut) {
-      scheduled.restart = true;
-      scheduled.restart_reason = "cut found: " + evidence.sentence;
-      if (events.warning)
-        events.warning("frame " + std::to_string(scheduled.frame) + " is taken for the first of a new shot: " +
-                       evidence.sentence + "; --find-cuts off lets history pass");
-    }
+/// Cuts in the pixels, and what else is worth a word, before any frame meets another.
+std::map<int, std::string> look_for_cuts(const Setup& s, const ResolveEvents& events, const std::function<bool()>& stop,
+                                         Workers& workers) {
+  if (!s.job.find_cuts) return {};
+  const SequenceFacts facts = find_facts(s.job, frames_in_reach(s.job, s.info), stop, workers);
+  for (const SequenceFact& fact : facts.facts) {
+    if (!events.warning || fact.kind == SequenceFact::Kind::gap) continue;
+    const std::string frame = "frame " + std::to_string(fact.frame);
+    if (fact.kind == SequenceFact::Kind::cut)
+      events.warning(frame + " is taken for the first of a new shot: " + fact.evidence +
+                     "; --find-cuts off lets history pass");
+    else
+      events.warning(frame + " (" + name_of(fact.kind) + "): " + fact.evidence);
   }
-  before = std::move(now);
+  return facts.cuts();
 }
 
 Resolved resolve_recursive(const Setup& s, const Present& present, const ScheduledFrame& scheduled, SubjectState& state,
@@ -246,12 +246,13 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
   if (events.planned) events.planned(s.info, s.plan);
 
   // Preflight: what will be written, and whether it can be.
-  std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash);
+  Workers workers(job.threads);
+  ResolveSummary summary;
+  const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
+  std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash, look_for_cuts(s, events, stop, workers));
   check_outputs(job, schedule);
 
-  Workers workers(job.threads);
   std::vector<SubjectState> states(s.info.first.subjects.size());
-  FrameTrace trace;
   const bool recursive = job.parameters.accumulator == Accumulator::recursive;
   const SourceOptions source_options{s.job,
                                      s.info,
@@ -268,10 +269,8 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     return source;
   };
   FrameWindow window(read);
-  ResolveSummary summary;
   int total = 0, done = 0;
   for (const ScheduledFrame& scheduled : schedule) total += scheduled.write;
-  const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
 
   const bool gathers = job.parameters.accumulator == Accumulator::gather;
   std::optional<TwoSidedPass> two_sided;
@@ -307,10 +306,6 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
     if (stop()) break;
 
     // Resolve, subject by subject.
-    if (job.find_cuts) {
-      look_for_cut(source, trace, scheduled, events, workers);
-      report.restart = scheduled.restart_reason;
-    }
     std::vector<Resolved> resolved = two_sided ? resolve_two_sided(*two_sided, i, source)
                                      : gathers ? resolve_gather(s, window, i, {first, last}, states, workers)
                                                : resolve_recursive(s, source, scheduled, states, workers);

@@ -11,10 +11,10 @@
 
 namespace varve {
 
-/// What `--jitter` names: `auto`, `none`, a CSV file (frame,jx,jy), or a pattern such as `halton23:16`
+/// What `--jitter` names: `auto`, `none`, `pixels`, a CSV file (frame,jx,jy), or a pattern such as `halton23:16`
 /// (the index of frame f is f modulo the length, 1-based as renderers count: f = 1 is the first point).
 struct JitterSource {
-  enum class Kind { automatic, none, table, pattern } kind = Kind::automatic;
+  enum class Kind { automatic, none, table, pattern, pixels } kind = Kind::automatic;
   std::map<int, Jitter> table;
   const JitterPattern* pattern = nullptr;
   std::vector<Jitter> points;  ///< of the pattern, with seed and direction 0
@@ -31,7 +31,7 @@ JitterSource with_samples(JitterSource source, int samples);
 Jitter pattern_point(std::span<const Jitter> points, int frame);
 
 /// Jitter of a frame; none when the source does not know it. `automatic` reads the attribute `jitter` (v2f) and the
-/// JSON in Cycles' `Note` of the part, and nothing else.
+/// JSON in Cycles' `Note` of the part, and nothing else. `pixels` knows none: it has to be measured first.
 std::optional<Jitter> jitter_of(const JitterSource& source, const Part& part, int frame);
 
 }  // namespace varve

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,8 +32,13 @@ struct ScheduledFrame {
 };
 
 /// Frames in order: requested ones are written, existing ones between them and within reach around them are only made
-/// use of. With --resume, frames that no unfinished frame depends on are left out.
-std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash);
+/// use of. `found_cuts` begin shots besides those of the job; with the evidence. With --resume, frames that no
+/// unfinished frame depends on are left out.
+std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash,
+                                            const std::map<int, std::string>& found_cuts = {});
+
+/// The same frames, whether they are done or not: those that cuts are to be looked for in.
+std::vector<int> frames_in_reach(const ResolveJob& job, const SequenceInfo& info);
 
 /// First and last place in the schedule of the frames that schedule[index] is made from.
 std::pair<std::size_t, std::size_t> span_around(const std::vector<ScheduledFrame>& schedule, std::size_t index,
