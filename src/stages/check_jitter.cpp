@@ -9,17 +9,21 @@
 
 #include "base/error.h"
 #include "base/json.h"
+#include "diagnose/resting_offsets.h"
 #include "diagnose/stuck_detail.h"
 #include "stages/main_frame.h"
 
 namespace varve {
 namespace {
 
+constexpr std::size_t kWindow = 16;   // frames that are held at a time
 constexpr std::size_t kApart = 3;     // frames between the two of a pair, at most
 constexpr double kTells = 0.1;        // px: a shift with a larger standard error says nothing
 constexpr double kConsistent = 0.05;  // px rms: shifts that contradict each other by more are none
 constexpr double kWidest = 0.75;      // px: an offset further from the mean does not lie in the pixel
 constexpr double kIdentical = 0.999, kStuck = 0.3, kTextured = 1e-4, kFewMove = 1000;
+constexpr double kRests = 0.02;      // share of the picture that rests and has structure
+constexpr float kStill = 1.0f / 64;  // px
 constexpr double kOffCenter = 0.15;  // px
 
 /// The longest run of numbers that follow each other; the first of several.
@@ -63,7 +67,7 @@ Plane<glm::vec2> chain(const Plane<glm::vec2>& first, const Plane<glm::vec2>& se
 void compare_newest(const std::deque<Held>& held, std::size_t newest, JitterCheck& check, Workers& workers) {
   const Held& now = held.back();
   Plane<glm::vec2> way;
-  for (std::size_t apart = 1; apart < held.size(); ++apart) {
+  for (std::size_t apart = 1; apart < std::min(held.size(), kApart + 1); ++apart) {
     const Held &between = held[held.size() - apart], &before = held[held.size() - 1 - apart];
     way = apart == 1 ? (between.motion.empty() ? Plane<glm::vec2>() : between.motion.clone())
                      : chain(way, between.motion, workers);
@@ -75,6 +79,71 @@ void compare_newest(const std::deque<Held>& held, std::size_t newest, JitterChec
     const StuckDetail stuck = stuck_detail(now.tone, before.tone, way, workers);
     check.neighbors.push_back({check.frames[newest], s, stuck.correlation, stuck.pixels});
   }
+}
+
+/// Pixels that rest in all of these frames, with their neighbors.
+Plane<std::uint8_t> resting_pixels(const std::deque<Held>& held, std::size_t begin, std::size_t end, Workers& workers) {
+  Window w = held[begin].tone.window();
+  for (std::size_t i = begin; i < end; ++i) w = intersect(w, held[i].tone.window());
+  Plane<std::uint8_t> resting(w, 0, std::uint8_t(1));
+  workers.for_rows(w.y0, w.y1, [&](int y) {
+    for (int x = w.x0; x < w.x1; ++x)
+      for (std::size_t i = begin + 1; i < end; ++i) {
+        if (held[i].motion.empty()) continue;
+        for (int v = std::max(w.y0, y - 1); v < std::min(w.y1, y + 2); ++v)
+          for (int u = std::max(w.x0, x - 1); u < std::min(w.x1, x + 2); ++u) {
+            const glm::vec2 m = held[i].motion.at(u, v);
+            if (!(std::abs(m.x) < kStill && std::abs(m.y) < kStill)) resting.at(x, y) = 0;
+          }
+      }
+  });
+  return resting;
+}
+
+/// Offsets of frames that rest, held[begin] to held[end]; `first` is the place of held[0] in the list of frames.
+void measure_at_rest(const std::deque<Held>& held, std::size_t begin, std::size_t end, std::size_t first,
+                     JitterCheck& check, std::vector<ShiftBetween>& found, Workers& workers) {
+  if (end - begin < kFewestAtRest) return;
+  std::vector<const Plane<float>*> tones;
+  for (std::size_t i = begin; i < end; ++i) tones.push_back(&held[i].tone);
+  std::vector<ShiftBetween> guesses;
+  for (ShiftBetween s : check.shifts) {
+    if (s.before < first + begin || s.now >= first + end) continue;
+    s.now -= first + begin, s.before -= first + begin;
+    guesses.push_back(s);
+  }
+  const OffsetFit start = fit_offsets(end - begin, guesses);
+  const RestingOffsets rest = resting_offsets(tones, resting_pixels(held, begin, end, workers), start.offsets, workers);
+  if (!rest.found) return;
+  for (std::size_t i = 1; i < rest.offsets.size(); ++i)
+    for (std::size_t apart = 1; apart <= std::min(i, kApart); ++apart) {
+      const glm::dvec2 a = rest.sigma[i], b = rest.sigma[i - apart];
+      const glm::dvec2 sigma(std::hypot(a.x, b.x), std::hypot(a.y, b.y));
+      if (sigma.x < kTells && sigma.y < kTells)
+        found.push_back(
+            {first + begin + i, first + begin + i - apart, rest.offsets[i] - rest.offsets[i - apart], sigma});
+    }
+}
+
+/// All runs of frames at rest among those that are held.
+void measure_runs_at_rest(const std::deque<Held>& held, std::size_t first, JitterCheck& check,
+                          std::vector<ShiftBetween>& found, Workers& workers) {
+  for (std::size_t begin = 0; begin < held.size();) {
+    std::size_t end = begin + 1;
+    // The neighbor shifts begin with the second frame of all.
+    while (end < held.size() && check.neighbors[first + end - 1].measured.textured > kRests) ++end;
+    measure_at_rest(held, begin, end, first, check, found, workers);
+    begin = end;
+  }
+}
+
+/// What was measured at rest is surer than a single pair.
+void prefer(std::vector<ShiftBetween> found, std::vector<ShiftBetween>& shifts) {
+  std::erase_if(shifts, [&](const ShiftBetween& s) {
+    return std::any_of(found.begin(), found.end(),
+                       [&](const ShiftBetween& f) { return f.now == s.now && f.before == s.before; });
+  });
+  shifts.insert(shifts.end(), found.begin(), found.end());
 }
 
 std::string text_of(const char* format, double a, double b = 0, double c = 0) {
@@ -200,6 +269,7 @@ JitterCheck check_jitter(const ResolveJob& job, const std::vector<int>& frames, 
   check.frames = longest_run(frames);
   std::deque<Held> held;
   MainFrame before;
+  std::vector<ShiftBetween> at_rest;
   double middle = 0;
   for (std::size_t i = 0; i < check.frames.size(); ++i) {
     MainFrame now = read_main_frame(job.input, check.frames[i], job.roles, stated, job.parameters.motion, workers);
@@ -208,10 +278,14 @@ JitterCheck check_jitter(const ResolveJob& job, const std::vector<int>& frames, 
     held.push_back({tone_plane(now.present.color, now.present.valid, middle, workers),
                     motion_to_previous(now, i > 0 ? &before : nullptr)});
     check.vectors = check.vectors || !held.back().motion.empty();
-    if (held.size() > kApart + 1) held.pop_front();
     compare_newest(held, i, check, workers);
+    if (held.size() == kWindow || i + 1 == check.frames.size()) {
+      measure_runs_at_rest(held, i + 1 - held.size(), check, at_rest, workers);
+      held.erase(held.begin(), held.begin() + std::ptrdiff_t(held.size() / 2));
+    }
     before = std::move(now);
   }
+  prefer(std::move(at_rest), check.shifts);
   check.fit = fit_offsets(check.frames.size(), check.shifts);
   check.verdict = judge_jitter(check.stated, check.shifts);
   check.why_not = find_reason(check);

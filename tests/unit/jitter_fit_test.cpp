@@ -51,8 +51,8 @@ TEST(OffsetFit, FindsOffsetsUpToTheirMeanAndLeavesOutliersOut) {
   glm::dvec2 mean(0);
   for (const glm::dvec2& t : truth) mean += t / double(truth.size());
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    EXPECT_NEAR(fit.offsets[i].x, truth[i].x - mean.x, 0.02) << i;
-    EXPECT_NEAR(fit.offsets[i].y, truth[i].y - mean.y, 0.02) << i;
+    EXPECT_NEAR(fit.offsets[i].x, truth[i].x - mean.x, 0.03) << i;
+    EXPECT_NEAR(fit.offsets[i].y, truth[i].y - mean.y, 0.03) << i;
   }
 }
 
