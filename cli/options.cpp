@@ -1,6 +1,7 @@
 // THE table of options. Names, ranges and texts of the parameters come from knobs().
 #include "compare_options.h"
 #include "jitter_options.h"
+#include "layer_options.h"
 #include "measure_options.h"
 #include "option_values.h"
 #include "synth_options.h"
@@ -274,6 +275,10 @@ void add_run_options(std::vector<Option>& rows) {
        "Read the pixels of all frames and tell what happens besides motion, with the evidence: cuts, flashes, frames "
        "that are held or doubled, steps of the exposure, missing frames.",
        flag([](auto& s) -> auto& { return s.facts; })});
+  add({"motion", 0, "", kProbe, kBasic, group,
+       "Hold the motion vectors against the pixels of frames spread over the sequence: which reading of them agrees "
+       "(direction, axes, unit, bias, scale, jitter), what speaks for it, and what is wrong with them.",
+       flag([](auto& s) -> auto& { return s.motion; })});
   add({"json", 0, "", kProbe, kBasic, group, "Print JSON.", flag([](auto& s) -> auto& { return s.json; })});
   add({"dry-run", 'n', "", kResolve, kBasic, group, "Check the input, print the plan and write nothing.",
        flag([](auto& s) -> auto& { return s.dry_run; })});
@@ -309,6 +314,7 @@ std::vector<Option> option_table() {
   add_synth_options(rows);
   add_jitter_options(rows);
   add_channel_options(rows);
+  add_layer_options(rows);
   add_parameter_options(rows);
   add_motion_options(rows);
   add_diagnostic_options(rows);

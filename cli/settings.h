@@ -28,6 +28,7 @@ struct Settings {
   int jitter_frames = 0;  ///< frames whose jitter probe measures
   bool facts = false;     ///< probe looks for cuts, flashes and the like
   bool json = false;
+  bool motion = false;  ///< whether probe holds the vectors against the pixels
 
   CompareJob compare;          ///< shares frames, cuts, roles and threads with `job`
   RoleRequest only_a, only_b;  ///< layers and mapped channels of one side

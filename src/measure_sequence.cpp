@@ -82,7 +82,8 @@ CompareJob compare_job(const MeasureJob& job, const SequencePattern& output, con
   compare.frames = frames;
   compare.cuts = job.resolve.cuts;
   compare.threads = job.resolve.threads;
-  compare.roles_b.layers = job.resolve.roles.layers;
+  // What is made of several layers stands in the place of the main color.
+  if (job.resolve.roles.combine_layers.mode == LayersMode::apart) compare.roles_b.layers = job.resolve.roles.layers;
   compare.roles_b.map = job.resolve.roles.map;
   compare.metrics.reset();
   for (MetricId id : {MetricId::psnr_tone, MetricId::flip, MetricId::flicker, MetricId::ghost, MetricId::sharpness,

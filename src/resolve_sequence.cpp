@@ -11,9 +11,11 @@
 #include "plan/preset.h"
 #include "resolve/accumulate.h"
 #include "stages/check_jitter.h"
+#include "stages/combine_resolved.h"
 #include "stages/follow_motion.h"
 #include "stages/frame_window.h"
 #include "stages/gather_frame.h"
+#include "stages/order_layers.h"
 #include "stages/preflight.h"
 #include "stages/previews.h"
 #include "stages/sequence_facts.h"
@@ -56,7 +58,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-Setup set_up(const ResolveJob& job) {
+Setup set_up(const OrderedLayers& ordered) {
+  const ResolveJob& job = ordered.job;
   JitterSource jitter = parse_jitter_source(job.jitter);
   if (jitter.kind == JitterSource::Kind::pixels) {
     Workers workers(job.threads);
@@ -68,6 +71,7 @@ Setup set_up(const ResolveJob& job) {
   if (job.find_cuts)
     plan.passes.push_back(
         {"find cuts", true, "before all else, color and vectors of every frame within reach are read once more"});
+  if (!ordered.note.empty()) plan.notes.push_back(ordered.note);
   Setup s{job,
           std::move(info),
           std::move(plan),
@@ -112,17 +116,9 @@ FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& worker
   return in_frame(headers.frame, [&] { return read_files(headers, {.whole_parts = true}, workers); });
 }
 
-/// One subject: the present meets the history.
-struct Resolved {
-  Accumulated accumulated;
-  History prediction = {};         ///< only where the diagnostic plane of that name is asked for
-  Plane<glm::vec4> finished = {};  ///< what is written, where that is not what the history keeps
-};
-
 /// Cuts in the pixels, and what else is worth a word, before any frame meets another.
 std::map<int, std::string> look_for_cuts(const Setup& s, const ResolveEvents& events, const std::function<bool()>& stop,
                                          Workers& workers) {
-  if (!s.job.find_cuts) return {};
   const SequenceFacts facts = find_facts(s.job, frames_in_reach(s.job, s.info), stop, workers);
   for (const SequenceFact& fact : facts.facts) {
     if (!events.warning || fact.kind == SequenceFact::Kind::gap) continue;
@@ -162,7 +158,7 @@ std::vector<Resolved> resolve_recursive(const Setup& s, const SourceFrame& sourc
 std::vector<Resolved> resolve_two_sided(TwoSidedPass& pass, std::size_t index, SourceFrame& source) {
   std::vector<Resolved> resolved;
   if (std::optional<std::vector<Accumulated>> all = pass.resolve(index, source))
-    for (Accumulated& accumulated : *all) resolved.push_back({std::move(accumulated), {}});
+    for (Accumulated& accumulated : *all) resolved.push_back({std::move(accumulated)});
   return resolved;
 }
 
@@ -185,7 +181,18 @@ Plane<glm::vec4> finish(const Present& present, const History& resolved, const P
   return sharpen(shown.empty() ? resolved.color : shown, resolved.total, parameters.finish.sharpen, workers);
 }
 
+/// What is written, in the order of headers.outputs.
+ResolvedColors colors_to_write(const Setup& s, const SourceFrame& source, const std::vector<Resolved>& resolved,
+                               Workers& workers) {
+  ResolvedColors written = combine_resolved(source, resolved, {s.job.roles, shows_combined(s.aovs)}, workers);
+  for (ResolvedSubject& color : written.colors)
+    color.finished =
+        &written.finished.emplace_back(finish(*color.present, color.accumulated->history, s.job.parameters, workers));
+  return written;
+}
+
 void count(FrameReport& report, const SourceFrame& source, const std::vector<Resolved>& resolved, Workers& workers) {
+  const std::vector<bool> single = are_single_subjects(source.headers);
   report.vectors_bad += source.vectors_bad;
   for (std::size_t k = 0; k < resolved.size(); ++k) {
     report.pixels += source.presents[k].color.window().pixels();
@@ -194,9 +201,11 @@ void count(FrameReport& report, const SourceFrame& source, const std::vector<Res
     report.clipped += resolved[k].accumulated.counts.clipped;
     for (std::size_t bit = 0; bit < report.rejected.size(); ++bit)
       report.rejected[bit] += resolved[k].accumulated.counts.rejected[bit];
+    report.opacity_held += source.presents[k].opacity_held;
     if (source.presents[k].companions.empty()) continue;
     report.companions_not_finite += source.presents[k].companions_not_finite;
-    report.lights = report.lights + measure_light_sum(source.presents[k], resolved[k].accumulated.history, workers);
+    if (single[k])  // what several colors were made of adds up to none of them
+      report.lights = report.lights + measure_light_sum(source.presents[k], resolved[k].accumulated.history, workers);
   }
 }
 
@@ -233,33 +242,39 @@ void write_outputs(const Setup& s, const FrameHeaders& headers, const FileSet& p
 
 }  // namespace
 
-Plan plan_sequence(const ResolveJob& job, SequenceInfo& info) {
-  Setup s = set_up(job);
+Plan plan_sequence(const ResolveJob& asked, SequenceInfo& info) {
+  const OrderedLayers ordered = order_layers(asked);
+  const ResolveJob& job = ordered.job;
+  Setup s = set_up(ordered);
   check_outputs(job, schedule_frames(job, s.info, s.hash));
   info = std::move(s.info);
   return std::move(s.plan);
 }
 
-ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& events) {
-  // Probe and plan: headers only.
-  Setup s = set_up(job);
+ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& events) {
+  // Probe and plan: headers only, unless depth says which layer is in front.
+  const OrderedLayers ordered = order_layers(asked);
+  const ResolveJob& job = ordered.job;
+  Setup s = set_up(ordered);
   if (events.planned) events.planned(s.info, s.plan);
 
   // Preflight: what will be written, and whether it can be.
   Workers workers(job.threads);
   ResolveSummary summary;
   const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
-  std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash, look_for_cuts(s, events, stop, workers));
+  std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash);
   check_outputs(job, schedule);
+  if (job.find_cuts) schedule = schedule_frames(job, s.info, s.hash, look_for_cuts(s, events, stop, workers));
 
-  std::vector<SubjectState> states(s.info.first.subjects.size());
+  std::vector<SubjectState> states(accumulated_subjects(s.info.first.outputs, s.info.first.subjects).size());
   const bool recursive = job.parameters.accumulator == Accumulator::recursive;
   const SourceOptions source_options{s.job,
                                      s.info,
                                      s.plan,
                                      s.jitter,
                                      s.into_working_space ? &*s.into_working_space : nullptr,
-                                     s.reach.back_to_restart};
+                                     s.reach.back_to_restart,
+                                     shows_combined(s.aovs)};
   const auto read = [&](std::size_t index) {
     SourceFrame source = read_source_frame(source_options, schedule[index].frame, workers);
     for (std::size_t k = 0; recursive && k < source.presents.size(); ++k) {
@@ -310,23 +325,19 @@ ResolveSummary resolve_sequence(const ResolveJob& job, const ResolveEvents& even
                                      : gathers ? resolve_gather(s, window, i, {first, last}, states, workers)
                                                : resolve_recursive(s, source, scheduled, states, workers);
     if (summary.stopped) break;
+    hold_layers(source, resolved, workers);
     count(report, source, resolved, workers);
-    if (scheduled.write)
-      for (std::size_t k = 0; k < resolved.size(); ++k)
-        resolved[k].finished = finish(source.presents[k], resolved[k].accumulated.history, job.parameters, workers);
+    const bool writes = scheduled.write && !scheduled.complete;
+    const ResolvedColors written = writes ? colors_to_write(s, source, resolved, workers) : ResolvedColors();
     report.resolve_seconds = clock.lap();
     if (stop()) break;
 
     // Write, and remember.
-    if (scheduled.write && !scheduled.complete) {
-      std::vector<ResolvedSubject> subjects;
-      for (std::size_t k = 0; k < resolved.size(); ++k)
-        subjects.push_back({&source.headers.outputs[k].subject, &source.presents[k], &resolved[k].accumulated,
-                            &resolved[k].prediction, &resolved[k].finished});
+    if (writes) {
       const FileSet beside = source.pixels.empty() ? read_beside(s, source.headers, workers) : FileSet();
       const FileSet& pixels = source.pixels.empty() ? beside : source.pixels;
       in_frame(scheduled.frame, [&] {
-        write_outputs(s, source.headers, pixels, subjects, frames_used(schedule, i, s.reach), report, workers);
+        write_outputs(s, source.headers, pixels, written.colors, frames_used(schedule, i, s.reach), report, workers);
       });
       report.write_seconds = clock.lap();
       report.written = true;

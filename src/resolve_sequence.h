@@ -22,6 +22,7 @@ struct FrameReport {
   double read_seconds = 0, resolve_seconds = 0, write_seconds = 0;
   std::array<std::size_t, kRejectBits> rejected{};  ///< pixels with each bit of the diagnostic plane `reject`
   std::size_t pixels = 0, not_finite = 0, vectors_bad = 0, restarted = 0, clipped = 0, half_overflows = 0;
+  std::size_t opacity_held = 0;           ///< pixels of layers whose alpha or transmittance lay beyond 0..1
   std::size_t companions_not_finite = 0;  ///< values of --channels that were NaN or infinite
   LightSum lights;                        ///< of the colors that have companions; no pixels without
   std::string restart;                    ///< why the history was dropped; empty if it was not

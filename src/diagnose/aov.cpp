@@ -51,6 +51,13 @@ constexpr Aov kAovs[] = {
      "How far the vector to the frame before and the vector that leads back from there miss each other. 0 where one of "
      "them is not known.",
      kByGather},
+    {"layer-index", "", PixelType::float32, "layers", "0 and up", "turbo", 0, 8,
+     "With --layers: the layer whose motion the pixel follows, 1 being the nearest; 0 for the background, and where "
+     "nothing is composited."},
+    {"layer-variation", "", PixelType::float32, "fraction", "0 to 1", "viridis", 0, 1,
+     "With --layers: the change of transmittance across that layer, or what the background is seen through."},
+    {"layers", "", PixelType::float32, "layers", "0 and up", "turbo", 0, 8,
+     "With --layers: layers that have a part in the pixel."},
 };
 
 constexpr RejectName kBits[] = {

@@ -9,6 +9,7 @@ namespace varve {
 namespace {
 
 constexpr double kSurest = 0.02;  // px: no measured shift is trusted further than that
+constexpr double kFair = 0.2;     // px rms: up to here it may, where it is clearly the best
 constexpr double kGood = 0.1;     // px rms: up to here an explanation explains
 constexpr double kSame = 0.03;    // px rms: explanations that differ by less say the same of these frames
 constexpr double kAtRest = 0.04;  // px rms
@@ -192,16 +193,18 @@ JitterVerdict judge_jitter(std::span<const std::optional<glm::dvec2>> stated, st
     }
     return std::sqrt(sum);
   }();
-  const bool stated_fits = v.as_stated <= kGood && v.as_stated <= 1.25 * v.misfit + 0.02;
+  const bool best_is_clear = v.misfit <= kFair && v.runner_up >= kClearly * v.misfit;
+  const bool stated_fits =
+      (v.as_stated <= kGood && v.as_stated <= 1.25 * v.misfit + 0.02) || (v.mistake.none() && best_is_clear);
   if (stated_fits) v.mistake = table.front(), v.misfit = v.as_stated;
   if (rest < kAtRest && stated_size > 2 * kAtRest)
     v.kind = JitterVerdict::Kind::at_rest, v.misfit = rest;
   else if (stated_fits)
     v.kind = JitterVerdict::Kind::fits;
-  else if (v.misfit <= kGood && v.runner_up >= kClearly * v.misfit && v.as_stated >= kClearly * v.misfit)
+  else if (best_is_clear && v.as_stated >= kClearly * v.misfit)
     v.kind = JitterVerdict::Kind::mistaken;
   else
-    v.kind = JitterVerdict::Kind::unexplained;
+    v.kind = v.as_stated > kFair ? JitterVerdict::Kind::unexplained : JitterVerdict::Kind::cannot_tell;
   return v;
 }
 

@@ -20,6 +20,7 @@ constexpr LayerAlias kLayers[] = {
     {"rgba", ChannelClass::color},
     {"rgb", ChannelClass::color},
     {"beauty", ChannelClass::color},
+    {"transmittance", ChannelClass::alpha},
     {"depth", ChannelClass::depth},
     {"z", ChannelClass::depth},
     {"zdepth", ChannelClass::depth},
@@ -65,7 +66,7 @@ bool any_of(std::string_view text, std::initializer_list<std::string_view> names
 
 ChannelClass class_of_base(const std::string& base) {
   if (any_of(base, {"r", "g", "b", "red", "green", "blue", "ry", "by"})) return ChannelClass::color;
-  if (any_of(base, {"a", "alpha", "ar", "ag", "ab", "ra", "ga", "ba"})) return ChannelClass::alpha;
+  if (any_of(base, {"a", "alpha", "ar", "ag", "ab", "ra", "ga", "ba", "tr", "tg", "tb"})) return ChannelClass::alpha;
   if (any_of(base, {"z", "zback", "depth", "zdepth"})) return ChannelClass::depth;
   if (any_of(base, {"velx", "vely"})) return ChannelClass::motion;
   return class_of_layer(base).value_or(ChannelClass::other);

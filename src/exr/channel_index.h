@@ -85,11 +85,24 @@ void find_motion(const ChannelIndex& index, const ChannelGroup& color, bool main
 void find_marks(const ChannelIndex& index, const ChannelGroup& color, bool main_color, const RoleRequest& request,
                 Subject& subject);
 
+/// Finds what a layer lets through (find_transmittance.cpp), where layers are to be combined. Throws
+/// Failure(inconsistent) when channels are asked for and the layer has none.
+void find_transmittance(const ChannelIndex& index, const ChannelGroup& color, const LayersRequest& request,
+                        Subject& subject);
+
 /// Finds the layers and channels of request.channels in file 0 (find_channels.cpp) and makes each a companion of the
 /// subject it belongs to or a subject of its own. Only what may be averaged: throws Failure(inconsistent) with the
 /// reason when a name is not there, or leads to vectors, depths, ids and the like, or to a color that is resolved
 /// already; what a pattern meets of these is left out and noted.
 void add_channels(const ChannelIndex& index, const RoleRequest& request, std::vector<Subject>& subjects);
+
+/// The main color of a view by its name (bare R G B A, beauty and the like), where it is none of `subjects`.
+struct MainColor {
+  std::string layer;
+  ColorPlace place;
+};
+std::optional<MainColor> main_color_beside(const ChannelIndex& index, const std::string& view,
+                                           std::span<const Subject> subjects);
 
 /// The channel that `--map role=` names; in the subject's part if it is there, else the first of that name. None if the
 /// role is not mapped. Throws Failure(inconsistent) if there is no such channel, or if it holds integers and `integers`

@@ -149,12 +149,23 @@ bool answers_to(const ColorLayer& color, const std::string& name) {
 std::vector<ChosenColor> choose_colors(const ChannelIndex& index, const std::vector<ColorLayer>& layers,
                                        const RoleRequest& request) {
   std::vector<ChosenColor> chosen;
+  const bool combine = request.combine_layers.mode != LayersMode::apart;
   if (request.layers.empty()) {
+    if (combine)
+      throw Failure(ExitCode::usage,
+                    "--layers composites the layers that --layer names front to back; give --layer NAME,NAME or "
+                    "--layer all");
     for (const std::string& view : views_to_resolve(index, layers)) chosen.push_back(main_color(layers, view));
     return chosen;
   }
   if (request.layers.size() == 1 && request.layers.front() == "all") {
-    for (const ColorLayer& layer : layers) chosen.push_back({layer, ""});
+    // What is made of the layers is none of them.
+    for (const ColorLayer& layer : layers)
+      if (!combine || layer.rank > 1) chosen.push_back({layer, ""});
+    if (chosen.empty())
+      throw Failure(ExitCode::inconsistent, index.files.front().path +
+                                                ": --layers has nothing to composite: there is no color layer besides "
+                                                "the main one; leave --layers out");
     return chosen;
   }
   for (const std::string& name : request.layers) {
@@ -304,6 +315,7 @@ std::vector<Subject> find_subjects(std::span<const FileHeader> files, const Role
     find_depth(index, color.color, request, subject);
     find_motion(index, *color.color.group, color.color.rank <= 1, request, subject);
     find_marks(index, *color.color.group, color.color.rank <= 1, request, subject);
+    find_transmittance(index, *color.color.group, request.combine_layers, subject);
     subjects.push_back(std::move(subject));
   }
   add_channels(index, request, subjects);
@@ -315,10 +327,21 @@ std::vector<Subject> find_subjects(std::span<const FileHeader> files, const Role
   return subjects;
 }
 
-std::vector<ColorOutput> outputs_apart(std::span<const Subject> subjects) {
-  std::vector<ColorOutput> outputs;
-  for (const Subject& subject : subjects) outputs.push_back({subject, {outputs.size()}});
-  return outputs;
+std::optional<MainColor> main_color_beside(const ChannelIndex& index, const std::string& view,
+                                           std::span<const Subject> subjects) {
+  std::optional<ColorLayer> best;
+  for (const ColorLayer& layer : color_layers(index)) {
+    const std::optional<ChannelRef> red = color_channel(*layer.group, 0);
+    const bool used =
+        std::any_of(subjects.begin(), subjects.end(), [&](const Subject& s) { return s.color[0] == red; });
+    if (layer.group->view == view && layer.rank <= 1 && !used && (!best || layer.rank < best->rank)) best = layer;
+  }
+  if (!best) return std::nullopt;
+  MainColor main{best->layer, {best->group->part, {}}};
+  for (std::size_t k = 0; k < 4; ++k)
+    if (const std::optional<ChannelRef> ref = color_channel(*best->group, k))
+      main.place.channels[k] = index.channel(*ref);
+  return main;
 }
 
 }  // namespace varve

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/combine_request.h"
 #include "exr/file_header.h"
 #include "motion/convention.h"
 
@@ -30,6 +31,13 @@ struct ColorPlace {
   std::array<std::optional<Channel>, 4> channels;  ///< R G B A as they are stored
 };
 
+/// Channels that say what a layer lets through, where that is not one minus its alpha.
+struct TransmittanceChannels {
+  std::array<ChannelRef, 3> channels;  ///< R G B; a scalar stands in all three places
+  bool opacity = false;                ///< they hold what is held back (AR AG AB) instead of what is let through
+  bool cumulative = false;             ///< of the layer and all in front of it
+};
+
 /// One thing to be resolved: a color with its own depth and motion, in one view.
 struct Subject {
   std::string
@@ -43,7 +51,8 @@ struct Subject {
   std::optional<ChannelRef> depth;
   std::optional<ChannelRef> id;  ///< object index, or the first rank of a Cryptomatte
   std::optional<NormalChannels> normal;
-  std::optional<ChannelRef> reactive, responsive;   ///< masks, only as mapped
+  std::optional<ChannelRef> reactive, responsive;  ///< masks, only as mapped
+  std::optional<TransmittanceChannels> transmittance;
   std::optional<VectorChannels> backward, forward;  ///< as stored, before decoding
   MotionEncoding backward_encoding, forward_encoding;
   std::string convention;  ///< row of the convention table; "" when no vectors were found
@@ -51,10 +60,17 @@ struct Subject {
   std::vector<std::string> notes;  ///< what was assumed and from what evidence, a sentence each
 };
 
+/// How several subjects make one color.
+enum class Combine { alone, layers, samples };
+
 /// One color that is written, and the subjects that it is made from.
 struct ColorOutput {
-  Subject subject;                  ///< its name, its place and what is said of it
-  std::vector<std::size_t> inputs;  ///< places among the subjects of the frame
+  Subject subject;                  ///< its name, its place, its companions and what is said of it
+  std::vector<std::size_t> inputs;  ///< places among the subjects of the frame; layers front to back
+  Combine combine = Combine::alone;
+  bool after = false;          ///< each input is accumulated by itself, and what comes of them combined
+  bool write_inputs = false;   ///< then: what comes of each is written as well, at its own place
+  bool only_compared = false;  ///< not written: the output before it tells how much this one differs
 };
 
 /// The part that holds the subject's color.
@@ -78,6 +94,7 @@ struct RoleRequest {
   std::vector<std::string> layers;  ///< layers to resolve; empty: the main one of each view; {"all"}: every color layer
   std::vector<std::string> channels;  ///< further layers and channels to resolve, by name or by pattern (* and ?)
   ChannelWeights channel_weights = ChannelWeights::beauty;
+  LayersRequest combine_layers;  ///< what becomes of `layers`
   std::vector<std::pair<std::string, std::string>>
       map;                          ///< role=channel: R G B A depth motion.x motion.y forward.x forward.y id normal.x
                                     ///< normal.y normal.z reactive responsive; full channel names, or part:channel as
@@ -94,8 +111,14 @@ struct RoleRequest {
 /// but their convention is not told by their names and not given. Further channels are found as add_channels says.
 std::vector<Subject> find_subjects(std::span<const FileHeader> files, const RoleRequest& request);
 
-/// Every subject for itself.
-std::vector<ColorOutput> outputs_apart(std::span<const Subject> subjects);
+/// What is written, and of which subjects it is made (exr/color_outputs.cpp). Every subject for itself, unless layers
+/// are to be combined; a layer that is alone in its view is never combined.
+std::vector<ColorOutput> color_outputs(std::span<const FileHeader> files, std::span<const Subject> subjects,
+                                       const RoleRequest& request);
+
+/// What a frame accumulates, in order: for each output itself, or each of its inputs where they are combined after.
+std::vector<const Subject*> accumulated_subjects(std::span<const ColorOutput> outputs,
+                                                 std::span<const Subject> subjects);
 
 /// What a channel holds, as far as its name says; for pass-through rules and for probe.
 enum class ChannelClass { color, alpha, depth, motion, normal, position, uv, id, cryptomatte, other };

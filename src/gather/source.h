@@ -23,6 +23,7 @@ struct LightRange {
 struct GatherSource {
   const Present* present = nullptr;
   glm::dvec2 jitter{0};                            ///< sample position minus pixel centre, pixels
+  bool repeats = false;                            ///< its samples are those of another frame: they count once, there
   const Plane<glm::vec2>* backward = nullptr;      ///< to the frame before; null: at rest
   const Plane<glm::vec2>* forward = nullptr;       ///< to the frame after; null: at rest
   const Plane<LightRange>* light_range = nullptr;  ///< local_range(); null: no test of it

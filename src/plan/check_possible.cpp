@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "plan/expansive.h"
+#include "plan/layers_plan.h"
 #include "plan/value.h"
 
 namespace varve {
@@ -88,6 +89,7 @@ void check_tests(const SequenceInfo& info, const Parameters& parameters) {
 }  // namespace
 
 void check_possible(const SequenceInfo& info, const Parameters& parameters) {
+  check_layers(info, parameters);
   if (parameters.accumulator == Accumulator::two_sided) check_two_sided(info, parameters);
   if (parameters.accumulator != Accumulator::gather) check_filters(parameters.recursive);
   if (parameters.accumulator != Accumulator::gather) check_tests(info, parameters);

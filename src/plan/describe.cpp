@@ -208,6 +208,8 @@ std::string roles_of(const SequenceInfo& info, ChannelRef ref) {
     if (s.normal) take((*s.normal)[0], "normal.x"), take((*s.normal)[1], "normal.y"), take((*s.normal)[2], "normal.z");
     take(s.reactive, "reactive");
     take(s.responsive, "responsive");
+    if (s.transmittance && std::ranges::find(s.transmittance->channels, ref) != s.transmittance->channels.end())
+      role.append(role.empty() ? "" : "+").append("transmittance");
     if (s.backward) take((*s.backward)[0], "motion.x"), take((*s.backward)[1], "motion.y");
     if (s.forward) take((*s.forward)[0], "forward.x"), take((*s.forward)[1], "forward.y");
     if (role.empty()) continue;

@@ -26,7 +26,10 @@ std::string describe_text(const SequenceInfo& info, const Plan& plan, const std:
 ///   statistics    [{frame, part, channel, role, least, greatest, mean, pixels, not_finite, zero}]
 ///   findings      [text]   what the statistics say of the vectors
 ///   notes         [text]
-std::string describe_json(const SequenceInfo& info, const Plan& plan, const std::vector<ChannelStatistics>& statistics);
+///   motion        what the pixels say of the vectors (motion_json), or null
+/// `motion` is a JSON object, or empty.
+std::string describe_json(const SequenceInfo& info, const Plan& plan, const std::vector<ChannelStatistics>& statistics,
+                          const std::string& motion = "");
 
 /// What the numbers say of the vectors and of bad pixels, a sentence each.
 std::vector<std::string> findings(const SequenceInfo& info, const std::vector<ChannelStatistics>& statistics);

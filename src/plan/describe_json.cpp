@@ -112,7 +112,7 @@ std::string statistics_json(const std::vector<ChannelStatistics>& statistics) {
 }  // namespace
 
 std::string describe_json(const SequenceInfo& info, const Plan& plan,
-                          const std::vector<ChannelStatistics>& statistics) {
+                          const std::vector<ChannelStatistics>& statistics, const std::string& motion) {
   std::vector<std::string> notes = plan.notes;
   notes.insert(notes.end(), info.notes.begin(), info.notes.end());
   const std::string frames = object({{"list", json_quote(format_frame_list(info.frames))},
@@ -132,7 +132,8 @@ std::string describe_json(const SequenceInfo& info, const Plan& plan,
                  {"plan", plan_json(plan)},
                  {"statistics", statistics_json(statistics)},
                  {"findings", array(findings(info, statistics), json_quote)},
-                 {"notes", array(notes, json_quote)}}) +
+                 {"notes", array(notes, json_quote)},
+                 {"motion", motion.empty() ? "null" : motion}}) +
          "\n";
 }
 

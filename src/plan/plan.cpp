@@ -9,6 +9,7 @@
 #include "plan/cost.h"
 #include "plan/describe_rectify.h"
 #include "plan/gather_plan.h"
+#include "plan/layers_plan.h"
 #include "plan/two_sided_plan.h"
 #include "plan/value.h"
 
@@ -275,6 +276,8 @@ class Planner {
         for (const ChannelRef& axis : *subject.normal) read(axis);
       if (plan_.use_reactive) read(subject.reactive);
       if (plan_.use_responsive) read(subject.responsive);
+      if (subject.transmittance)
+        for (const ChannelRef& channel : subject.transmittance->channels) read(channel);
       const std::optional<VectorChannels>& vector = subject.backward ? subject.backward : subject.forward;
       if (vector) read((*vector)[0]), read((*vector)[1]);
       if (plan_.use_forward && subject.forward) read((*subject.forward)[0]), read((*subject.forward)[1]);
@@ -311,6 +314,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   planner.add("read", true, "");
   planner.add("sanitize", true, "pixels that are not finite are kept from spreading");
   planner.motion();
+  if (!composites_after(info)) plan.passes.push_back(layers_pass(info));
   if (parameters.accumulator == Accumulator::gather) {
     planner.gather();
   } else {
@@ -323,6 +327,7 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
     planner.weights();
     planner.blend();
   }
+  if (composites_after(info)) plan.passes.push_back(layers_pass(info));
   planner.companions();
   planner.fallback();
   planner.finish();
@@ -336,6 +341,10 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   for (const Subject& subject : info.first.subjects)
     for (const std::string& note : subject.notes)
       plan.notes.push_back((subject.view.empty() ? "" : "view " + subject.view + ": ") + note);
+  for (const ColorOutput& made : info.first.outputs)
+    for (const std::string& note : made.subject.notes)
+      if (made.combine != Combine::alone)
+        plan.notes.push_back((made.subject.view.empty() ? "" : "view " + made.subject.view + ": ") + note);
   plan.bytes = estimate_bytes(info, plan, parameters, output);
   plan.seconds_per_frame = estimate_seconds(info, plan, parameters, output, threads > 0 ? threads : Workers().count());
   return plan;

@@ -206,7 +206,7 @@ FrameHeaders read_frame_headers(const InputSequence& input, int frame, const Rol
     headers.files.push_back(read_header(input.color.path(frame)));
     for (const SequencePattern& role : input.roles) headers.files.push_back(read_header(role.path(frame)));
     headers.subjects = find_subjects(headers.files, roles);
-    headers.outputs = outputs_apart(headers.subjects);
+    headers.outputs = color_outputs(headers.files, headers.subjects, roles);
     const Subject& main = headers.subjects.front();
     for (const std::optional<ChannelRef>& channel : main.color)
       if (channel && !headers.jitter)

@@ -130,8 +130,13 @@ void measure_runs_at_rest(const std::deque<Held>& held, std::size_t first, Jitte
                           std::vector<ShiftBetween>& found, Workers& workers) {
   for (std::size_t begin = 0; begin < held.size();) {
     std::size_t end = begin + 1;
-    // The neighbor shifts begin with the second frame of all.
-    while (end < held.size() && check.neighbors[first + end - 1].measured.textured > kRests) ++end;
+    // The neighbor shifts begin with the second frame of all. Where the camera starts, little goes on resting.
+    double most = 0;
+    for (; end < held.size(); ++end) {
+      const double rests = check.neighbors[first + end - 1].measured.textured;
+      if (!(rests > std::max(kRests, most / 2))) break;
+      most = std::max(most, rests);
+    }
     measure_at_rest(held, begin, end, first, check, found, workers);
     begin = end;
   }
@@ -226,7 +231,8 @@ std::string judge(const JitterCheck& c) {
           "clearly (the best to %.2f px); is it the list of another render? Give --jitter pixels",
           v.as_stated, v.misfit);
     default:
-      return "too few frames have a stated jitter for a comparison; the pixels show the offsets below";
+      return "whether the stated jitter is right cannot be told: too few frames can be compared, or not surely enough; "
+             "the pixels show the offsets below";
   }
 }
 

@@ -12,7 +12,7 @@
 namespace varve {
 namespace {
 
-constexpr int kBlocksAcross = 22;
+constexpr int kBlocksAcross = 22, kLeastBlock = 8;
 constexpr int kQuantiles = 64;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
@@ -24,8 +24,8 @@ constexpr double kAboveNoise = 2;
 constexpr double kSame = 0.4;
 
 // Where a cut begins. Measured on the scenes of `varve synth`: see tests/unit/find_cut_test.cpp.
-constexpr double kUnexplained = 0.5, kUnexplainedAlone = 0.75, kDistance = 0.03, kDistanceWithoutVectors = 0.1,
-                 kDistanceAlone = 0.3, kTurned = 30, kJudged = 0.05;
+constexpr double kUnexplained = 0.5, kUnexplainedAlone = 0.9, kDistance = 0.06, kLeastDistance = 0.01,
+                 kDistanceWithoutVectors = 0.1, kDistanceAlone = 0.3, kTurned = 30, kJudged = 0.05;
 
 // Blocks whose light changed by the same factor, up to this one, changed alike.
 constexpr double kAgree = 1.1;
@@ -36,6 +36,27 @@ struct Blocks {
   Plane<float> luma_error;  ///< standard error of the mean: noise, and detail finer than a block
 };
 
+/// Mean and sum of squares about it (Welford).
+struct Spread {
+  double mean = 0, m2 = 0;
+  int n = 0;
+  void add(double v) {
+    const double step = v - mean;
+    mean += step / ++n;
+    m2 += step * (v - mean);
+  }
+  double error() const { return n > 0 ? std::sqrt(m2) / n : 0; }
+};
+
+/// Standard error of the mean of a block. Lines thinner than a pixel are met by whole rows or columns or not at all, so
+/// these are what is independent where they differ more than chance lets them.
+double error_of_mean(const Spread& all, const std::vector<Spread>& lines) {
+  Spread rows, columns;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (lines[i].n > 0) (i < lines.size() / 2 ? rows : columns).add(lines[i].mean);
+  return std::max({all.error(), rows.error(), columns.error()});
+}
+
 Blocks block_means(const Present& p, int block, Workers& workers) {
   const Window& w = p.color.window();
   const Window grid{0, 0, (w.width() + block - 1) / block, (w.height() + block - 1) / block};
@@ -43,22 +64,24 @@ Blocks block_means(const Present& p, int block, Workers& workers) {
            Plane<float>(grid, 0, 0.0f)};
   workers.for_rows(0, grid.y1, [&](int by) {
     for (int bx = 0; bx < grid.x1; ++bx) {
-      double r = 0, g = 0, bl = 0, mean = 0, m2 = 0;
-      int n = 0;
+      double r = 0, g = 0, bl = 0;
+      Spread all;
+      std::vector<Spread> lines(std::size_t(2 * block));  // rows, then columns
       for (int y = w.y0 + by * block; y < std::min(w.y1, w.y0 + (by + 1) * block); ++y)
         for (int x = w.x0 + bx * block; x < std::min(w.x1, w.x0 + (bx + 1) * block); ++x) {
           if (!(p.valid.at(x, y) > 0)) continue;
           const glm::vec4& c = p.color.at(x, y);
           const glm::dvec3 light = glm::max(glm::dvec3(c), 0.0);
           r += light.r, g += light.g, bl += light.b;
-          const double luma = 0.2126 * light.r + 0.7152 * light.g + 0.0722 * light.b, step = luma - mean;
-          mean += step / ++n;
-          m2 += step * (luma - mean);
+          const double luma = 0.2126 * light.r + 0.7152 * light.g + 0.0722 * light.b;
+          all.add(luma);
+          lines[std::size_t((y - w.y0) % block)].add(luma);
+          lines[std::size_t(block + (x - w.x0) % block)].add(luma);
         }
-      if (n == 0) continue;
+      if (all.n == 0) continue;
       const double sum = r + g + bl;
-      b.luma.at(bx, by) = float(std::min(mean, 1e38));
-      b.luma_error.at(bx, by) = float(std::min(std::sqrt(m2) / n, 1e38));
+      b.luma.at(bx, by) = float(std::min(all.mean, 1e38));
+      b.luma_error.at(bx, by) = float(std::min(error_of_mean(all, lines), 1e38));
       b.red.at(bx, by) = sum > 0 ? float(r / sum) : 1.0f / 3;
       b.green.at(bx, by) = sum > 0 ? float(g / sum) : 1.0f / 3;
     }
@@ -194,7 +217,7 @@ FrameTrace trace_of(const Present& present, const Plane<glm::vec2>& motion,
   t.frame = frame;
   t.window = present.color.window();
   if (t.window.empty()) return t;
-  t.block = std::max(1, std::min(t.window.width(), t.window.height()) / kBlocksAcross);
+  t.block = std::max(kLeastBlock, std::min(t.window.width(), t.window.height()) / kBlocksAcross);
   Blocks blocks = block_means(present, t.block, workers);
   const std::vector<float> lumas = sorted_values(blocks.luma);
   const double median = lumas.empty() ? 0 : double(lumas[lumas.size() / 2]);
@@ -233,7 +256,8 @@ CutEvidence judge_cut(const FrameTrace& before, const FrameTrace& now, int steps
     e.turned = turned_between(*before.world_to_camera, *now.world_to_camera);
   const double far = e.with_vectors ? kDistance : kDistanceWithoutVectors;
   const bool lost = e.unexplained > kUnexplained &&
-                    (e.distance > far || e.turned > kTurned || (e.with_vectors && e.unexplained > kUnexplainedAlone));
+                    (e.distance > far || e.turned > kTurned ||
+                     (e.with_vectors && e.unexplained > kUnexplainedAlone && e.distance > kLeastDistance));
   // Flat pictures have nothing to follow; there only the colors tell.
   e.cut = e.judged >= kJudged ? lost : e.distance > kDistanceAlone;
   e.sentence = in_words(e);

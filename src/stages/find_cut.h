@@ -10,7 +10,8 @@
 
 namespace varve {
 
-/// What of a frame tells whether the next one belongs to it: means of square blocks, about 22 along the shorter side.
+/// What of a frame tells whether the next one belongs to it: means of square blocks, about 22 along the shorter side
+/// and of 8 pixels at least.
 struct FrameTrace {
   int frame = 0;
   Window window;                                       ///< of the picture

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "diagnose/color_print.h"
 #include "gather/opposite_vectors.h"
 #include "gather/round_trip.h"
 #include "gather/shading_gain.h"
@@ -60,9 +61,29 @@ struct SubjectFrames {
     return s;
   }
 
-  std::vector<GatherSource> sources(std::size_t begin, std::size_t end) const {
+  std::uint64_t print(std::size_t i) const {
+    std::optional<std::uint64_t>& made = memory[i].print;
+    if (!made) made = color_print(present(i).color, workers);
+    return *made;
+  }
+
+  /// A held or doubled frame shows nothing new: of frames that are the same to the last bit, the one nearest to the
+  /// resolved frame counts, the earlier of two. Vectors are followed through the others.
+  bool repeats(std::size_t i, std::size_t begin, std::size_t end, std::size_t resolved) const {
+    const auto rank = [&](std::size_t k) {
+      return k > resolved ? 2 * (k - resolved) : k == resolved ? 0 : 2 * (resolved - k) - 1;
+    };
+    for (std::size_t k = begin; k <= end && print(i) != 0; ++k)
+      if (print(k) == print(i) && rank(k) < rank(i)) return true;
+    return false;
+  }
+
+  std::vector<GatherSource> sources(std::size_t begin, std::size_t end, std::size_t resolved) const {
     std::vector<GatherSource> list;
-    for (std::size_t i = begin; i <= end; ++i) list.push_back(source(i));
+    for (std::size_t i = begin; i <= end; ++i) {
+      list.push_back(source(i));
+      list.back().repeats = repeats(i, begin, end, resolved);
+    }
     return list;
   }
 };
@@ -82,7 +103,7 @@ void make_light(const SubjectFrames& frames, std::size_t i, const GatherParamete
   pilot.filter = SampleFilter::none;
   pilot.cells = std::min(parameters.cells, 2);
   const std::size_t begin = back(i, 1, frames.first), end = ahead(i, 1, frames.last);
-  const Accumulated picture = gather(frames.sources(begin, end), i - begin, pilot, frames.test, {}, frames.workers);
+  const Accumulated picture = gather(frames.sources(begin, end, i), i - begin, pilot, frames.test, {}, frames.workers);
   Plane<float>& light = frames.memory[i].light;
   light = local_light(picture.history.color, frames.present(i), frames.test, parameters.gain_window, frames.workers);
   follow_sudden_light(light, picture.history.color, frames.present(i), frames.test, parameters.gain_window,
@@ -113,7 +134,7 @@ Accumulated gather_frame(const FrameWindow& window, std::size_t subject, std::si
   const std::size_t begin = back(index, parameters.reach, first), end = ahead(index, parameters.reach, last);
   if (parameters.gain)
     for (std::size_t i = begin; i <= end; ++i) make_light(frames, i, parameters);
-  return gather(frames.sources(begin, end), index - begin, parameters, frames.test, wanted, workers);
+  return gather(frames.sources(begin, end, index), index - begin, parameters, frames.test, wanted, workers);
 }
 
 }  // namespace varve

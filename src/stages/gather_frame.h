@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
+#include <optional>
 
 #include "gather/gather.h"
 #include "stages/frame_window.h"
@@ -13,8 +15,9 @@ namespace varve {
 struct GatherFrame {
   Plane<glm::vec2> backward, forward;  ///< made from the neighbor's or checked against them; empty: as in the file
   SurfaceBlocks blocks;
-  Plane<float> light;       ///< local_light() of the pilot; empty until it is needed
-  Plane<LightRange> range;  ///< local_range() of it
+  std::optional<std::uint64_t> print;  ///< color_print() of the frame
+  Plane<float> light;                  ///< local_light() of the pilot; empty until it is needed
+  Plane<LightRange> range;             ///< local_range() of it
 };
 
 /// By place in the schedule; frames that are passed are forgotten.

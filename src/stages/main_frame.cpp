@@ -9,7 +9,10 @@ namespace varve {
 
 MainFrame read_main_frame(const InputSequence& input, int frame, const RoleRequest& roles, const JitterSource& jitter,
                           const MotionParameters& motion, Workers& workers) {
-  FrameHeaders headers = read_frame_headers(input, frame, roles, jitter);
+  RoleRequest main = roles;
+  main.channels.clear();
+  if (main.layers.size() > 1 || main.layers == std::vector<std::string>{"all"}) main.layers.clear();
+  FrameHeaders headers = read_frame_headers(input, frame, main, jitter);
   headers.subjects.resize(1);
   Subject& subject = headers.subjects.front();
   subject.companions.clear();

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/version.h"
 #include "exr/write_frame.h"
+#include "plan/layers_plan.h"
 #include "plan/preset.h"
 
 namespace varve {
@@ -166,6 +167,7 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   if (job.find_cuts) text += " find-cuts=on";
   text += " jitter=" + describe_jitter(job.jitter) + " convention=" + job.roles.convention;
   for (const std::string& layer : job.roles.layers) text += " layer=" + layer;
+  text += layers_text(job.roles.combine_layers, info);
   for (const std::string& channels : job.roles.channels) text += " channels=" + channels;
   if (!job.roles.channels.empty())
     text += std::string(" channel-weights=") + (job.roles.channel_weights == ChannelWeights::own ? "own" : "beauty");
@@ -217,14 +219,19 @@ void check_roles(const ResolveJob& job, const SequenceInfo& info) {
       throw Failure(ExitCode::usage, "'" + role.text() + "' is one file for " + std::to_string(info.frames.size()) +
                                          " frames; put the frame number in, as in motion.####.exr");
   if (info.frames.size() < 2 || job.roles.convention == "none") return;
-  for (const Subject& subject : info.first.subjects)
-    if (!subject.backward && !subject.forward)
+  const auto moves = [](const Subject& s) { return s.backward || s.forward; };
+  // A layer of several may be a still; a note of it says so.
+  for (const ColorOutput& output : info.first.outputs)
+    if (std::none_of(output.inputs.begin(), output.inputs.end(),
+                     [&](std::size_t i) { return moves(info.first.subjects[i]); })) {
+      const Subject& subject = info.first.subjects[output.inputs.front()];
       throw Failure(
           ExitCode::inconsistent,
           "'" + info.first.files.front().path + "' (frame " + std::to_string(info.first.frame) +
               ") has no motion vectors for " + (subject.layer.empty() ? "its color" : "layer '" + subject.layer + "'") +
               "; render them, name them with --map motion.x=CHANNEL or --motion-file, or say --convention none to "
               "resolve as if nothing moved");
+    }
 }
 
 void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& schedule) {

@@ -124,6 +124,21 @@ Plane<glm::vec4> read_companion(const Companion& companion, const FileSet& files
   return plane;
 }
 
+/// What is let through, R G B, as stored; all of it where the channels have no data.
+Plane<glm::vec3> read_transmittance(const TransmittanceChannels& from, const FileSet& files, const Window& window,
+                                    Workers& workers) {
+  Plane<glm::vec3> plane(window);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Plane<float> channel =
+        read_plane(pixels_of(files, from.channels[k]), window, from.opacity ? 0.0f : 1.0f, workers);
+    workers.for_rows(window.y0, window.y1, [&](int y) {
+      for (int x = 0; x < window.width(); ++x)
+        plane.row(y)[x][int(k)] = from.opacity ? 1 - channel.row(y)[x] : channel.row(y)[x];
+    });
+  }
+  return plane;
+}
+
 std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const ChannelNeeds& needs, int file) {
   std::vector<ChannelRef> wanted;
   const auto add = [&](ChannelRef ref) {
@@ -141,6 +156,8 @@ std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const Chan
       for (const ChannelRef& axis : *subject.normal) add(axis);
     if (needs.reactive && subject.reactive) add(*subject.reactive);
     if (needs.responsive && subject.responsive) add(*subject.responsive);
+    if (subject.transmittance)
+      for (const ChannelRef& channel : subject.transmittance->channels) add(channel);
     const auto& vectors = subject.backward ? subject.backward : subject.forward;
     if (needs.motion && vectors) add((*vectors)[0]), add((*vectors)[1]);
     if (needs.forward && subject.forward) add((*subject.forward)[0]), add((*subject.forward)[1]);
@@ -196,6 +213,8 @@ Present read_present(const Subject& subject, const FileSet& pixels, const Window
     present.reactive = read_mask(pixels_of(pixels, *subject.reactive), window, 0, 1, workers);
   if (options.use_responsive && subject.responsive)
     present.responsive = read_mask(pixels_of(pixels, *subject.responsive), window, 1, 1e6f, workers);
+  if (subject.transmittance)
+    present.transmittance = read_transmittance(*subject.transmittance, pixels, window, workers);
   if (!options.use_motion) return present;
 
   const auto read = [&](const VectorChannels& channels, const MotionEncoding& encoding) {

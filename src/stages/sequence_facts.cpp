@@ -22,7 +22,7 @@ constexpr int kLongestFlash = 2;                                    // frames
 constexpr int kBefore = 1 + kLongestFlash, kAfter = kLongestFlash;  // frames that decide beside the one in question
 constexpr double kStandsOut = 0.2, kOtherColors = 0.1;              // see stands_out()
 const double kStep = std::log2(1.2);                                // stops: less is no step of the exposure
-constexpr double kAgreed = 0.7;                                     // share of the picture that takes the same step
+constexpr double kAgreed = 0.85;                                    // share of the picture that takes the same step
 
 /// What two frames have to do with each other.
 struct Relation {
@@ -157,26 +157,33 @@ void find_breaks(const std::vector<Seen>& seen, std::vector<SequenceFact>& facts
 
 void find_repeats(const std::vector<Seen>& seen, std::vector<SequenceFact>& facts) {
   using enum SequenceFact::Kind;
-  std::map<std::uint64_t, int> first;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (seen[i].print == 0) continue;
-    const auto [known, is_new] = first.emplace(seen[i].print, seen[i].frame);
-    if (is_new || !seen[i].asked) continue;
-    const bool goes_on = !facts.empty() && (facts.back().kind == freeze || facts.back().kind == duplicate) &&
-                         facts.back().until == seen[i].frame - 1 && facts.back().other == known->second &&
-                         known->second + 1 == facts.back().frame;
-    if (goes_on) {
-      facts.back().until = seen[i].frame;
-      facts.back().kind = freeze;
+  std::map<std::uint64_t, int> latest;
+  std::int64_t distance = 0;  // of the last fact
+  for (const Seen& s : seen) {
+    if (s.print == 0) continue;
+    const auto known = latest.find(s.print);
+    const int other = known == latest.end() ? s.frame : known->second;
+    latest[s.print] = s.frame;
+    if (other == s.frame || !s.asked) continue;
+    const std::int64_t back = std::int64_t(s.frame) - other;
+    if (!facts.empty() && facts.back().until == s.frame - 1 && back == distance) {
+      facts.back().until = s.frame;
+      facts.back().kind = back == 1 ? freeze : duplicate;
       continue;
     }
     SequenceFact fact;
     fact.kind = duplicate;
-    fact.frame = fact.until = seen[i].frame;
-    fact.other = known->second;
-    fact.evidence = "every pixel is the same to the last bit as in frame " + std::to_string(fact.other) +
-                    "; it adds nothing, and its vectors may tell of a motion that is not in the picture";
+    fact.frame = fact.until = s.frame;
+    fact.other = other;
     facts.push_back(std::move(fact));
+    distance = back;
+  }
+  for (SequenceFact& fact : facts) {
+    const bool several = fact.until > fact.frame && fact.kind == duplicate;
+    fact.evidence =
+        (several ? "to the last bit, each is the frame " + std::to_string(fact.frame - fact.other) + " before it"
+                 : "every pixel is the same to the last bit as in frame " + std::to_string(fact.other)) +
+        "; that adds nothing";
   }
 }
 

@@ -1,6 +1,9 @@
 #include "stages/source_frame.h"
 
+#include <utility>
+
 #include "stages/check_same_subjects.h"
+#include "stages/combine_presents.h"
 
 namespace varve {
 
@@ -29,12 +32,15 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, Workers& 
                          .use_normal = plan.use_normal,
                          .use_reactive = plan.use_reactive,
                          .use_responsive = plan.use_responsive};
+  std::vector<Present> presents;
   for (const Subject& subject : source.headers.subjects) {
     const Part& part = source.headers.files.front().parts[std::size_t(part_of(subject))];
-    source.presents.push_back(read_present(subject, source.pixels, part.data_window, part.display_window, read,
-                                           options.into_working_space, source.vectors_bad, workers));
-    if (const auto& jitter = source.headers.jitter) source.presents.back().jitter = glm::dvec2(jitter->x, jitter->y);
+    presents.push_back(read_present(subject, source.pixels, part.data_window, part.display_window, read,
+                                    options.into_working_space, source.vectors_bad, workers));
+    if (const auto& jitter = source.headers.jitter) presents.back().jitter = glm::dvec2(jitter->x, jitter->y);
   }
+  source.presents =
+      combine_presents(source.headers, std::move(presents), {options.job.roles, options.show_combined}, workers);
   if (!options.keep_pixels) source.pixels.clear();
   return source;
 }

@@ -14,7 +14,7 @@ namespace varve {
 struct SourceFrame {
   FrameHeaders headers;
   FileSet pixels;                 ///< as stored; empty where the frame is read again when it is written
-  std::vector<Present> presents;  ///< one for each of headers.subjects
+  std::vector<Present> presents;  ///< one for each of accumulated_subjects(): a subject, or several combined
   std::size_t vectors_bad = 0;    ///< vectors that cannot be used
 };
 
@@ -35,10 +35,12 @@ struct SourceOptions {
   const Plan& plan;
   const JitterSource& jitter;
   const ColorConversion* into_working_space = nullptr;
-  bool keep_pixels = false;  ///< SourceFrame::pixels stay, with all that is only passed through
+  bool keep_pixels = false;    ///< SourceFrame::pixels stay, with all that is only passed through
+  bool show_combined = false;  ///< Present::combined is asked for
 };
 
-/// Reads one frame: headers, the channels that the plan names, a present for each subject, vectors as stored. Throws
+/// Reads one frame: headers, the channels that the plan names, a present for each thing that is
+/// accumulated, vectors as stored. Throws
 /// Failure naming the frame.
 SourceFrame read_source_frame(const SourceOptions& options, int frame, Workers& workers);
 

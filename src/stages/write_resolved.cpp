@@ -230,12 +230,25 @@ Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubje
   if (aov.name == "removed") fill(of(a.diagnostics.removed));
   if (aov.name == "round-trip") fill(of(a.diagnostics.round_trip));
   if (aov.name == "reject-future") fill(of(a.diagnostics.reject_future));
+  // 0 where nothing was combined.
+  const auto fill_combined = [&](const Plane<float>& source) {
+    fill([&](int x, int y) { return source.empty() ? 0.0f : source.row(y)[x]; });
+  };
+  if (aov.name == "layer-index") fill_combined(present.combined.winner);
+  if (aov.name == "layer-variation") fill_combined(present.combined.variation);
+  if (aov.name == "layers") fill_combined(present.combined.touched);
   if (aov.name == "motion")
     fill([&](int x, int y) {
       const float v = present.motion.empty() ? 0.0f : present.motion.row(y)[x][component];
       return v == v ? v : 0.0f;  // no vector: `reject` says so; outputs hold finite numbers only
     });
   return plane;
+}
+
+bool shows_combined(const std::vector<const Aov*>& aovs) {
+  return std::any_of(aovs.begin(), aovs.end(), [](const Aov* aov) {
+    return aov->name == "layer-index" || aov->name == "layer-variation" || aov->name == "layers";
+  });
 }
 
 DiagnosticsWanted diagnostics_wanted(const std::vector<const Aov*>& aovs) {

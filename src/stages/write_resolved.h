@@ -53,6 +53,9 @@ FileOutput diagnostic_parts(const FileHeader& source, const std::vector<Resolved
 /// float.
 Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubject& resolved, Workers& workers);
 
+/// Whether one of these shows how several layers or samples became one color.
+bool shows_combined(const std::vector<const Aov*>& aovs);
+
 /// Which planes accumulate() must fill for these.
 DiagnosticsWanted diagnostics_wanted(const std::vector<const Aov*>& aovs);
 
