@@ -43,6 +43,34 @@ Value<Settings> aovs_value() {
   return value;
 }
 
+Value<Settings> samples_value() {
+  Value<Settings> value = list(
+      [](Settings& s, const std::string& item) {
+        SampleRequest& samples = s.job.roles.samples;
+        const SampleMode before = samples.mode;
+        if (item == "off") samples = {};
+        if (item == "resolve") samples.mode = SampleMode::resolve;
+        if (item == "each") samples.mode = SampleMode::each;
+        if (item == "off" || item == "resolve" || item == "each") return true;
+        const auto edge =
+            item.starts_with("grid:") ? parse_number<int>(std::string_view(item).substr(5)) : std::nullopt;
+        constexpr int kWidest = 16;
+        if (!edge || *edge < 2 || *edge > kWidest) return false;
+        samples.grid = *edge;
+        if (before == SampleMode::off) samples.mode = SampleMode::resolve;
+        return true;
+      },
+      "off, resolve or each, and grid:2 to grid:16 where the picture itself is a grid of samples, with commas between");
+  value.choices.push_back({"off", "numbered parts and layers are like all others"});
+  value.choices.push_back({"resolve", "they are resolved to the pixel first, which costs what one sample costs"});
+  value.choices.push_back({"each",
+                           "each is resolved over time, then they are to the pixel; with --accumulator gather "
+                           "all meet in it"});
+  value.choices.push_back(
+      {"grid:2", "the samples are 2 x 2 pixels of a picture that is twice as wide and as high; up to grid:16"});
+  return value;
+}
+
 Value<Settings> preset_value() {
   Value<Settings> value;
   for (const Preset& row : presets()) value.choices.push_back({std::string(row.name), std::string(row.description)});

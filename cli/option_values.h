@@ -92,6 +92,8 @@ Value<Settings> map_value();
 Value<Settings> aovs_value();
 /// auto, or a row of the convention table.
 Value<Settings> convention_value();
+/// What is done with samples, and which they are.
+Value<Settings> samples_value();
 /// Sets all parameters.
 Value<Settings> preset_value();
 /// 320x180.

@@ -121,6 +121,10 @@ void add_channel_options(std::vector<Option>& rows) {
   add({"channel-weights", 0, "WHICH", kResolve | kProbe, kAdvanced, group, "By which weights --channels are resolved.",
        word(
            [](auto& s) -> auto& { return s.job.roles.channel_weights; }, kChannelWeights)});
+  add({"samples", 0, "HOW", kResolve | kProbe, kBasic, group,
+       "What is done with several samples in each pixel: numbered parts or layers such as sample.0 and sample.1, or s0 "
+       "and s1, or a picture of N x N times the pixels. They become one color.",
+       samples_value()});
   add({"map", 0, "ROLE=CHANNEL", kInput, kAdvanced, group,
        "Name the channel of a role, where its name does not tell. motion leads to the previous frame, forward to the "
        "next.",
@@ -138,7 +142,7 @@ void add_channel_options(std::vector<Option>& rows) {
        "disk, at rest or along the vectors, and stops where they do not tell; a CSV file has the columns frame,jx,jy, "
        "sample position minus pixel center in pixels, y down, as `varve jitter` writes it; patterns are those of "
        "`varve "
-       "help patterns`, with a seed of 0 and a direction of 0.",
+       "help patterns`, with a seed of 0 and a direction of 0. With --samples the columns are frame,sample,jx,jy.",
        text(
            [](auto& s) -> auto& { return s.job.jitter; }, "auto, none, pixels, a CSV file or a pattern such as halton23:16")})
       .completes = Completes::files;

@@ -16,6 +16,7 @@
 #include "stages/frame_window.h"
 #include "stages/gather_frame.h"
 #include "stages/order_layers.h"
+#include "stages/place_samples.h"
 #include "stages/preflight.h"
 #include "stages/previews.h"
 #include "stages/sequence_facts.h"
@@ -29,7 +30,7 @@ namespace {
 struct SubjectState {
   ForwardMemory forward;
   History history;
-  GatherMemory gathered;
+  std::vector<GatherMemory> gathered;  ///< of each sample
 };
 
 /// Made once, used for every frame.
@@ -113,7 +114,11 @@ bool is_needed(const std::vector<ScheduledFrame>& schedule, std::size_t index, c
 /// The file's pixels as stored, for what stands beside the color when it is written.
 FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& workers) {
   if (!s.job.request.keep_channels) return FileSet(headers.files.size());
-  return in_frame(headers.frame, [&] { return read_files(headers, {.whole_parts = true}, workers); });
+  return in_frame(headers.frame, [&] {
+    FileSet pixels = read_files(headers, {.whole_parts = true}, workers);
+    divide_passed_vectors(headers, pixels.front(), workers);
+    return pixels;
+  });
 }
 
 /// Cuts in the pixels, and what else is worth a word, before any frame meets another.
@@ -162,14 +167,31 @@ std::vector<Resolved> resolve_two_sided(TwoSidedPass& pass, std::size_t index, S
   return resolved;
 }
 
+/// Places among what is accumulated that are gathered together: samples meet in one pixel, everything else alone.
+std::vector<std::vector<std::size_t>> gathered_together(const FrameHeaders& headers) {
+  std::vector<std::vector<std::size_t>> groups;
+  std::size_t next = 0;
+  for (const ColorOutput& output : headers.outputs) {
+    const std::size_t count = output.after ? output.inputs.size() : 1;
+    for (std::size_t k = next; k < next + count; ++k)
+      if (k > next && output.combine == Combine::samples)
+        groups.back().push_back(k);
+      else
+        groups.push_back({k});
+    next += count;
+  }
+  return groups;
+}
+
+/// What samples make together is the result of the first of them.
 std::vector<Resolved> resolve_gather(const Setup& s, const FrameWindow& window, std::size_t index,
                                      std::pair<std::size_t, std::size_t> span, std::vector<SubjectState>& states,
                                      Workers& workers) {
-  std::vector<Resolved> resolved;
-  for (std::size_t k = 0; k < states.size(); ++k)
-    resolved.push_back({gather_frame(window, k, index, span.first, span.second, s.gather, states[k].gathered,
-                                     diagnostics_wanted(s.aovs), workers),
-                        {}});
+  std::vector<Resolved> resolved(states.size());
+  for (const std::vector<std::size_t>& group : gathered_together(window[index].headers))
+    resolved[group.front()].accumulated =
+        gather_frame(window, group, index, span.first, span.second, s.gather, states[group.front()].gathered,
+                     diagnostics_wanted(s.aovs), workers);
   return resolved;
 }
 
@@ -204,7 +226,8 @@ void count(FrameReport& report, const SourceFrame& source, const std::vector<Res
     report.opacity_held += source.presents[k].opacity_held;
     if (source.presents[k].companions.empty()) continue;
     report.companions_not_finite += source.presents[k].companions_not_finite;
-    if (single[k])  // what several colors were made of adds up to none of them
+    if (single[k] &&
+        !resolved[k].accumulated.history.empty())  // what several colors were made of adds up to none of them
       report.lights = report.lights + measure_light_sum(source.presents[k], resolved[k].accumulated.history, workers);
   }
 }
@@ -220,24 +243,26 @@ WriteOptions write_options(const Setup& s, const std::string& frames_used) {
 void write_outputs(const Setup& s, const FrameHeaders& headers, const FileSet& pixels,
                    const std::vector<ResolvedSubject>& resolved, const std::string& frames_used, FrameReport& report,
                    Workers& workers) {
-  const FileHeader& source = headers.files.front();
+  const FileHeader &source = headers.files.front(), &stored = files_on_disk(headers).front();
   const WriteOptions options = write_options(s, frames_used);
   const std::vector<const Aov*> none;
   const bool apart = s.job.diagnostics.has_value();
   FileOutput color =
       resolved_parts(source, pixels.front(), resolved, apart ? none : s.aovs, s.job.request.keep_channels,
-                     s.out_of_working_space ? &*s.out_of_working_space : nullptr, workers);
+                     headers.passed_on, s.out_of_working_space ? &*s.out_of_working_space : nullptr, workers);
   for (OutputPart& part : color.parts)
     if (!part.copy_chunks) part.compression = s.job.compression;
   report.half_overflows = color.half_overflows;
+  place_samples(headers, color.parts);
   if (apart) {
-    const FileOutput diagnostics = diagnostic_parts(source, resolved, s.aovs, workers);
-    write_frame(s.job.diagnostics->path(headers.frame), source, diagnostics.parts, options, workers);
+    FileOutput diagnostics = diagnostic_parts(source, resolved, s.aovs, workers);
+    place_samples(headers, diagnostics.parts);
+    write_frame(s.job.diagnostics->path(headers.frame), stored, diagnostics.parts, options, workers);
   }
   if (!s.job.preview_folder.empty())
     write_previews(s.job.preview_folder, headers.frame, resolved, s.aovs, s.display ? &*s.display : nullptr, workers);
   // The resolved frame goes last: once it is there, everything that belongs to it is.
-  write_frame(report.path, source, color.parts, options, workers);
+  write_frame(report.path, stored, color.parts, options, workers);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "exr/channel_index.h"
+#include "exr/sample_names.h"
 
 namespace varve {
 namespace {
@@ -187,6 +188,17 @@ std::vector<ChosenColor> choose_colors(const ChannelIndex& index, const std::vec
   return chosen;
 }
 
+// Numbered layers.
+std::vector<ChosenColor> choose_sample_colors(const ChannelIndex& index, const std::vector<ColorLayer>& layers,
+                                              const RoleRequest& request) {
+  std::vector<NamedLayer> names;
+  for (const ColorLayer& layer : layers) names.push_back({layer.group->view, layer.layer});
+  const ChosenSamples samples = choose_samples(names, request.layers, index.files.front().path);
+  std::vector<ChosenColor> chosen;
+  for (const std::size_t place : samples.layers) chosen.push_back({layers[place], chosen.empty() ? samples.note : ""});
+  return chosen;
+}
+
 // Every channel that holds a depth by its name. Ray distances (Denoising Depth), positions and vectors with a Z are
 // none.
 std::vector<RoleCandidate> depth_candidates(const ChannelIndex& index) {
@@ -306,7 +318,8 @@ std::vector<Subject> find_subjects(std::span<const FileHeader> files, const Role
   } else {
     const std::vector<ColorLayer> layers = color_layers(index);
     if (layers.empty()) refuse_without_color(index);
-    chosen = choose_colors(index, layers, request);
+    const bool numbered = request.samples.mode != SampleMode::off && request.samples.grid == 0;
+    chosen = numbered ? choose_sample_colors(index, layers, request) : choose_colors(index, layers, request);
     for (const ChosenColor& color : chosen) refuse_subsampled_color(index, *color.color.group);
   }
   std::vector<Subject> subjects;

@@ -83,6 +83,19 @@ inline int part_of(const Subject& subject) {
 /// The parts that hold the subject's color or a companion of it, ascending.
 std::vector<int> parts_of(const Subject& subject);
 
+/// What is done with several samples in a pixel.
+enum class SampleMode {
+  off,      ///< nothing is taken for a sample of a pixel
+  resolve,  ///< they are resolved to one first, which meets the history
+  each      ///< each meets a history of its own, then they are resolved to one
+};
+
+/// Which samples there are, and what is done with them.
+struct SampleRequest {
+  SampleMode mode = SampleMode::off;
+  int grid = 0;  ///< n: every n x n pixels of the files are one; 0: parts or layers that are numbered
+};
+
 /// By which weights the channels of RoleRequest::channels are resolved.
 enum class ChannelWeights {
   own,    ///< each is a subject of its own, with motion and depth of the color
@@ -91,6 +104,7 @@ enum class ChannelWeights {
 
 /// What the user said about roles.
 struct RoleRequest {
+  SampleRequest samples;
   std::vector<std::string> layers;  ///< layers to resolve; empty: the main one of each view; {"all"}: every color layer
   std::vector<std::string> channels;  ///< further layers and channels to resolve, by name or by pattern (* and ?)
   ChannelWeights channel_weights = ChannelWeights::beauty;
@@ -110,6 +124,12 @@ struct RoleRequest {
 /// when no color is found, when a named layer or channel does not exist (naming what does), and when vectors are there
 /// but their convention is not told by their names and not given. Further channels are found as add_channels says.
 std::vector<Subject> find_subjects(std::span<const FileHeader> files, const RoleRequest& request);
+
+/// What of file 0 is passed on otherwise than as it is, because it was used up: samples, of which one lends its data.
+struct PassedOn {
+  std::vector<ChannelRef> dropped;
+  std::vector<std::pair<ChannelRef, std::string>> renamed;
+};
 
 /// What is written, and of which subjects it is made (exr/color_outputs.cpp). Every subject for itself, unless layers
 /// are to be combined; a layer that is alone in its view is never combined.

@@ -78,9 +78,11 @@ struct SidecarReader {
     if (!within_a_pixel({*x, *y}))
       refuse("the jitter of frame " + std::to_string(*frame) +
              " is more than one pixel; give sample position minus pixel center in pixels, y down");
-    if (*sample != 0) return;
-    if (!source.table.emplace(*frame, Jitter{*x, *y}).second)
-      refuse("frame " + std::to_string(*frame) + " is listed twice");
+    const bool fresh = *sample == 0 ? source.table.emplace(*frame, Jitter{*x, *y}).second
+                                    : source.further.emplace(std::pair(*frame, *sample), Jitter{*x, *y}).second;
+    if (!fresh)
+      refuse("frame " + std::to_string(*frame) + (*sample == 0 ? "" : ", sample " + std::to_string(*sample)) +
+             " is listed twice");
   }
 
   void read(std::istream& in) {
@@ -115,6 +117,7 @@ JitterSource read_sidecar(const std::string& path) {
   if (source.table.empty())
     throw Failure(ExitCode::input,
                   path + ": holds no jitter; it needs the header \"frame,jx,jy\" and a line for each frame");
+  source.by_sample = reader.has_samples;
   source.description = path + (reader.has_samples ? " (several samples in a frame: sample 0 is taken)" : "");
   return source;
 }
@@ -210,6 +213,22 @@ std::optional<Jitter> jitter_of(const JitterSource& source, const Part& part, in
                       (part.name.empty() ? "" : " of part \"" + part.name + "\"") +
                       " is more than one pixel or not a number; give the jitter with --jitter FILE, or --jitter none");
   return jitter;
+}
+
+std::optional<Jitter> jitter_of_sample(const JitterSource& source, const Part& part, int frame, int sample,
+                                       int samples) {
+  if (samples == 1) return jitter_of(source, part, frame);
+  if (source.kind == JitterSource::Kind::pattern) {
+    // In turns of whole frames: the length counts points, so many of them for each frame.
+    const auto turns = std::max<std::int64_t>(1, std::int64_t(source.points.size()) / samples);
+    const std::int64_t turn = ((std::int64_t(frame) - 1) % turns + turns) % turns;
+    return source.points[std::size_t((turn * samples + sample) % std::int64_t(source.points.size()))];
+  }
+  if (source.kind != JitterSource::Kind::table) return jitter_of(source, part, frame);
+  if (!source.by_sample) return std::nullopt;
+  if (sample == 0) return jitter_of(source, part, frame);
+  const auto found = source.further.find({frame, sample});
+  return found == source.further.end() ? std::nullopt : std::optional<Jitter>(found->second);
 }
 
 }  // namespace varve

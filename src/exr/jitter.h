@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exr/file_header.h"
@@ -15,7 +16,9 @@ namespace varve {
 /// (the index of frame f is f modulo the length, 1-based as renderers count: f = 1 is the first point).
 struct JitterSource {
   enum class Kind { automatic, none, table, pattern, pixels } kind = Kind::automatic;
-  std::map<int, Jitter> table;
+  std::map<int, Jitter> table;                    ///< by frame, of sample 0
+  std::map<std::pair<int, int>, Jitter> further;  ///< by frame and sample, of the others
+  bool by_sample = false;                         ///< the table has a column for samples
   const JitterPattern* pattern = nullptr;
   std::vector<Jitter> points;  ///< of the pattern, with seed and direction 0
   std::string description;     ///< for probe and logs: where the numbers come from
@@ -33,5 +36,11 @@ Jitter pattern_point(std::span<const Jitter> points, int frame);
 /// Jitter of a frame; none when the source does not know it. `automatic` reads the attribute `jitter` (v2f) and the
 /// JSON in Cycles' `Note` of the part, and nothing else. `pixels` knows none: it has to be measured first.
 std::optional<Jitter> jitter_of(const JitterSource& source, const Part& part, int frame);
+
+/// The same of one of `samples` samples in each pixel, whose part is `part`. A pattern gives the first frame its first
+/// `samples` points, and so on: `source` must have been made by with_samples(). A table without a column for samples
+/// knows none of them.
+std::optional<Jitter> jitter_of_sample(const JitterSource& source, const Part& part, int frame, int sample,
+                                       int samples);
 
 }  // namespace varve

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "exr/channel_names.h"
 #include "exr/chunk_bytes.h"
+#include "exr/header_bytes.h"
 #include "exr/planned_file.h"
 
 namespace varve {
@@ -13,6 +14,31 @@ namespace {
 bool has_floats(const Part& part) {
   return std::any_of(part.channels.begin(), part.channels.end(),
                      [](const Channel& c) { return c.type == PixelType::float32; });
+}
+
+// Both ends inclusive, as OpenEXR has it.
+std::string box_bytes(const Window& w) {
+  std::string bytes;
+  for (const int edge : {w.x0, w.y0, w.x1 - 1, w.y1 - 1}) append(bytes, std::int32_t(edge));
+  return bytes;
+}
+
+/// What a part says of itself, where that is not what its source says.
+void change_header(const OutputPart& request, PlannedPart& plan) {
+  if (request.windows) {
+    plan.part.data_window = request.windows->first;
+    plan.part.display_window = request.windows->second;
+    plan.raw.set("dataWindow", "box2i", box_bytes(plan.part.data_window));
+    plan.raw.set("displayWindow", "box2i", box_bytes(plan.part.display_window));
+  }
+  if (request.name) {
+    plan.part.name = *request.name;
+    if (request.name->empty())
+      plan.raw.remove("name");
+    else
+      plan.raw.set("name", "string", *request.name);
+  }
+  for (const std::string& attribute : request.without) plan.raw.remove(attribute);
 }
 
 // Data that means something else as soon as one bit changes.
@@ -39,6 +65,7 @@ PlannedPart plan_part(const Container& source, const OutputPart& request, const 
   PlannedPart plan;
   plan.part = source.header.parts.at(std::size_t(request.source_part));
   plan.raw = source.raw[std::size_t(request.source_part)];
+  change_header(request, plan);
   if (!request.copy_chunks) {
     if (is_deep(plan.part))
       throw Failure(ExitCode::output, "cannot write flat channels to '" + path +

@@ -21,8 +21,11 @@ struct OutputChannel {
 struct OutputPart {
   int source_part = 0;       ///< part of the source that lends attributes, windows, name and view
   bool copy_chunks = false;  ///< the part is written as it is, chunk by chunk, never decoded (flat, tiled or deep)
-  std::vector<OutputChannel> channels;     ///< all channels of the part when !copy_chunks; any order
-  std::optional<Compression> compression;  ///< default: the source's if lossless, else ZIP
+  std::vector<OutputChannel> channels;               ///< all channels of the part when !copy_chunks; any order
+  std::optional<Compression> compression;            ///< default: the source's if lossless, else ZIP
+  std::optional<std::pair<Window, Window>> windows;  ///< data and display, where they are not the source's
+  std::optional<std::string> name;                   ///< of the part, where it is not the source's; empty: none
+  std::vector<std::string> without;                  ///< attributes of the source that do not hold any more
 };
 
 struct WriteOptions {

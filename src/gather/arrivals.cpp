@@ -67,14 +67,17 @@ void scattered_tiles(const GatherSource& source, const Carried& field, const Til
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
 }
 
-/// Adds what arrives in the tile of `out` from a block of frame `f` whose first pixel is (x0, y0).
-void collect_block(std::span<const GatherSource> sources, std::size_t present, std::size_t f, const Carried& carried,
-                   int x0, int y0, const LightRule& light, const SurfaceTest& test, TileArrivals& out) {
+/// Adds what arrives in the tile of `out` from a block of source `f` whose first pixel is (x0, y0). `target` is the
+/// sample of that number in the resolved frame.
+void collect_block(std::span<const GatherSource> sources, const GatherSource& target, std::size_t f,
+                   const Carried& carried, int x0, int y0, const LightRule& light, const SurfaceTest& test,
+                   TileArrivals& out) {
   const GatherSource& source = sources[f];
   const Window& w = source.window();
   const double ox = 0.5 + source.jitter.x - out.tile.x0, oy = 0.5 + source.jitter.y - out.tile.y0;
   const float low = -float(out.around) / kBinsPerPixel, high = float(kTile) - low;
   constexpr float most = std::numeric_limits<float>::max();
+  const bool lit = light.gain && source.present != target.present;
   const int x1 = std::min(x0 + kTile, w.x1), y1 = std::min(y0 + kTile, w.y1);
   for (int y = y0; y < y1; ++y) {
     const glm::vec3* field = carried.row(y) - w.x0;
@@ -92,11 +95,11 @@ void collect_block(std::span<const GatherSource> sources, std::size_t present, s
                 .light = float(luminance(color[x])),
                 .id = surfaces[x].id,
                 .pixel = std::uint32_t(y - w.y0) << 16 | std::uint32_t(x - w.x0),
-                .frame = std::uint32_t(f)};
-      if (light.gain && f != present) {
+                .source = std::uint32_t(f)};
+      if (lit) {
         const glm::dvec2 at = glm::dvec2(double(ax), double(ay)) + glm::dvec2(out.tile.x0, out.tile.y0);
         const ShadingGain g =
-            shading_gain(source, x, y, sources[present], at, {a.id, a.depth}, test, light.dead_zone, light.weight);
+            shading_gain(source, x, y, target, at, {a.id, a.depth}, test, light.dead_zone, light.weight);
         a.gain = g.gain, a.weight = g.weight;
         a.light = std::clamp(a.light * g.gain, -most, most);  // statistics of infinities are no numbers
       }
@@ -148,15 +151,16 @@ void fit_surfaces(TileArrivals& t, std::span<const GatherSource> sources, const 
     last = k;
   }
   if (t.surfaces.size() < 2) return t.surfaces.clear();
-  for (TileSurface& s : t.surfaces) s.motion.resize(sources.size());
+  const std::size_t samples = samples_of(sources);
+  for (TileSurface& s : t.surfaces) s.motion.resize(sources.size() / samples);
   for (std::size_t i = 0; i < t.sorted.size(); ++i) {
     const Arrival& a = t.sorted[i];
-    const GatherSource& source = sources[a.frame];
+    const GatherSource& source = sources[a.source];
     const Window& w = source.window();
     const int x = w.x0 + int(a.pixel & 0xFFFF), y = w.y0 + int(a.pixel >> 16);
     const glm::dvec2 moved = glm::dvec2(double(a.x) + t.tile.x0, double(a.y) + t.tile.y0) - source.position(x, y);
-    t.surfaces[of[i]].motion[a.frame].add(glm::dvec2(double(a.x), double(a.y)) - glm::dvec2(kTile / 2), 1,
-                                          {moved, double(source.present->depth.at(x, y))});
+    t.surfaces[of[i]].motion[frame_of(a, samples)].add(glm::dvec2(double(a.x), double(a.y)) - glm::dvec2(kTile / 2), 1,
+                                                       {moved, double(source.present->depth.at(x, y))});
   }
 }
 
@@ -207,10 +211,12 @@ void collect_arrivals(const TileGrid& grid, int column, int row, std::span<const
   out.unsorted.clear();
   out.bin_of.clear();
   const std::size_t tile = std::size_t(row * grid.columns() + column);
+  const std::size_t samples = samples_of(sources);
   for (std::size_t f = 0; f < sources.size(); ++f) {
     const Window& w = sources[f].window();
+    const GatherSource& own = sources[present * samples + sources[f].sample];
     for (std::uint32_t b = lists[f].begin[tile]; b < lists[f].begin[tile + 1]; ++b)
-      collect_block(sources, present, f, fields[f], w.x0 + int(lists[f].blocks[b] & 0xFFFF) * kTile,
+      collect_block(sources, own, f, fields[f], w.x0 + int(lists[f].blocks[b] & 0xFFFF) * kTile,
                     w.y0 + int(lists[f].blocks[b] >> 16) * kTile, light, test, out);
   }
   sort_into_bins(out);

@@ -16,16 +16,21 @@ inline constexpr int kBinsPerPixel = 4;
 
 /// One carried sample.
 struct Arrival {
-  float x, y;           ///< where, pixels from the tile's corner
-  float depth;          ///< in the resolved frame
-  float gain, weight;   ///< what its light is multiplied with, and how much it counts, in (0, 1]
-  float light;          ///< its luminance after the gain
-  std::uint32_t id;     ///< of its object
-  std::uint32_t pixel;  ///< in its own frame: y * 65536 + x, from the window's corner
-  std::uint32_t frame;  ///< place in the window of frames
+  float x, y;            ///< where, pixels from the tile's corner
+  float depth;           ///< in the resolved frame
+  float gain, weight;    ///< what its light is multiplied with, and how much it counts, in (0, 1]
+  float light;           ///< its luminance after the gain
+  std::uint32_t id;      ///< of its object
+  std::uint32_t pixel;   ///< in its own frame: y * 65536 + x, from the window's corner
+  std::uint32_t source;  ///< place among the sources: frame by frame, of each its samples
 };
 
-/// For each tile the blocks of a frame's pixels from which something arrives there.
+/// Place in the window of frames of `samples` samples each.
+inline std::size_t frame_of(const Arrival& a, std::size_t samples) {
+  return samples == 1 ? a.source : a.source / samples;  // hot, and a division is slow
+}
+
+/// For each tile the blocks of a source's pixels from which something arrives there.
 struct BlockLists {
   std::vector<std::uint32_t> begin;   ///< per tile, one more at the end
   std::vector<std::uint32_t> blocks;  ///< block row * 65536 + block column
@@ -49,7 +54,8 @@ struct TileSurface {
   std::vector<AffineFit<glm::dvec3>> motion;
 };
 
-/// What arrives in and around one tile, sorted by bins of a quarter pixel: row by row, within a bin by frame and pixel.
+/// What arrives in and around one tile, sorted by bins of a quarter pixel: row by row, within a bin by source and
+/// pixel.
 struct TileArrivals {
   Window tile;
   int around = 0;  ///< bins beyond the tile's edge on each side
@@ -76,7 +82,7 @@ inline bool belongs(std::uint32_t id, float near, float far, const Arrival& a, c
          (test.near(near, a.depth) || test.near(far, a.depth) || (a.depth >= near && a.depth <= far));
 }
 
-/// Fills `out` with what arrives in tile (column, row) of the grid.
+/// Fills `out` with what arrives in tile (column, row) of the grid. `present` counts frames.
 void collect_arrivals(const TileGrid& grid, int column, int row, std::span<const GatherSource> sources,
                       std::size_t present, std::span<const Carried> fields, std::span<const BlockLists> lists,
                       const LightRule& light, const SurfaceTest& test, TileArrivals& out);

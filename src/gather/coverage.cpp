@@ -8,7 +8,7 @@ namespace varve {
 namespace {
 
 Track track_of(const PixelContext& c, const Arrival& a, double distance) {
-  const GatherSource& source = c.sources[a.frame];
+  const GatherSource& source = c.sources[a.source];
   const Window& w = source.window();
   const int x = w.x0 + int(a.pixel & 0xFFFF), y = w.y0 + int(a.pixel >> 16);
   const glm::dvec2 to(double(a.x) + c.arrivals->tile.x0, double(a.y) + c.arrivals->tile.y0);
@@ -73,12 +73,13 @@ int first_pixel_at(double position) {
 /// Where the surface of `arrivals` is in each frame.
 void track_surface(const PixelContext& c, std::span<const Arrival* const> arrivals, int x, int y,
                    std::vector<Track>& tracks) {
-  const std::size_t frames = c.sources.size();
+  const std::size_t frames = c.sources.size() / c.samples;
   tracks.assign(frames, {});
   const double mx = x - c.arrivals->tile.x0 + 0.5, my = y - c.arrivals->tile.y0 + 0.5;
   for (const Arrival* a : arrivals) {
     const double dx = double(a->x) - mx, dy = double(a->y) - my, distance = dx * dx + dy * dy;
-    if (distance < tracks[a->frame].distance) tracks[a->frame] = track_of(c, *a, distance);
+    Track& track = tracks[frame_of(*a, c.samples)];
+    if (distance < track.distance) track = track_of(c, *a, distance);
   }
   // In the resolved frame itself it lies where it lies.
   Track& here = tracks[c.present];
@@ -104,7 +105,7 @@ void track_surface(const PixelContext& c, std::span<const Arrival* const> arriva
   for (std::size_t f = c.present; f-- > 0;) tracks[f].weight = std::min(tracks[f].weight, tracks[f + 1].weight);
 }
 
-/// Samples of frame `f` that would arrive around the pixel if they moved with the surface.
+/// Samples of source `f` that would arrive around the pixel if they moved with the surface.
 void look_along(const PixelContext& c, std::size_t f, const Track& t, std::uint32_t id, int x, int y,
                 PixelScratch& scratch) {
   const GatherSource& source = c.sources[f];
@@ -156,7 +157,7 @@ void measure_coverage(const PixelContext& c, std::span<const Arrival* const> arr
   track_surface(c, arrivals, x, y, scratch.tracks);
   scratch.px.clear(), scratch.py.clear(), scratch.pw.clear(), scratch.is_hit.clear();
   for (std::size_t f = 0; f < c.sources.size(); ++f)
-    look_along(c, f, scratch.tracks[f], arrivals.front()->id, x, y, scratch);
+    look_along(c, f, scratch.tracks[f / c.samples], arrivals.front()->id, x, y, scratch);
   const std::size_t area = std::size_t(c.axis.count) * std::size_t(c.axis.count);
   scratch.hits.assign(area, 1);
   scratch.misses.assign(area, 0);

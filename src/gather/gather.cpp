@@ -20,17 +20,22 @@ const CellKernel* cell_kernel_for(Isa isa) {
   return &baseline::cell_kernel;
 }
 
-/// Carries every frame to the resolved one, outwards from it on both sides.
+/// Carries every frame to the resolved one, outwards from it on both sides, sample by sample.
 std::vector<Carried> carry_all(std::span<const GatherSource> sources, std::size_t present, const SurfaceTest& test,
                                Workers& workers) {
+  const std::size_t samples = samples_of(sources), frames = sources.size() / samples;
   std::vector<Carried> fields(sources.size());
-  fields[present] = carry_present(sources[present], workers);
-  const auto followed = [&](std::size_t i) { return Followed{&sources[i], &fields[i]}; };
-  for (std::size_t i = present + 1; i < sources.size(); ++i)
-    fields[i] =
-        carry(sources[i], false, test, followed(i - 1), i - present > 1 ? followed(i - 2) : Followed{}, workers);
-  for (std::size_t i = present; i-- > 0;)
-    fields[i] = carry(sources[i], true, test, followed(i + 1), present - i > 1 ? followed(i + 2) : Followed{}, workers);
+  for (std::size_t s = 0; s < samples; ++s) {
+    const auto at = [&](std::size_t frame) { return frame * samples + s; };
+    const auto followed = [&](std::size_t frame) { return Followed{&sources[at(frame)], &fields[at(frame)]}; };
+    fields[at(present)] = carry_present(sources[at(present)], workers);
+    for (std::size_t i = present + 1; i < frames; ++i)
+      fields[at(i)] =
+          carry(sources[at(i)], false, test, followed(i - 1), i - present > 1 ? followed(i - 2) : Followed{}, workers);
+    for (std::size_t i = present; i-- > 0;)
+      fields[at(i)] =
+          carry(sources[at(i)], true, test, followed(i + 1), present - i > 1 ? followed(i + 2) : Followed{}, workers);
+  }
   return fields;
 }
 
@@ -77,15 +82,16 @@ glm::dvec4 lit(const glm::vec4& sample, float gain) {
 PixelSums sum_pixel(const PixelContext& c, const PixelWeights& pixel) {
   PixelSums r;
   double shift = 0;
+  const std::size_t first = c.present * c.samples, after = first + c.samples;
   for (std::size_t i = 0; i < pixel.weights.size(); ++i) {
     const Arrival* a = pixel.arrivals[i];
     if (!a) continue;
     const double weight = double(pixel.weights[i]);
-    const glm::dvec4 color = lit(c.sources[a->frame].color(a->pixel), a->gain * pixel.scale[i]);
+    const glm::dvec4 color = lit(c.sources[a->source].color(a->pixel), a->gain * pixel.scale[i]);
     r.removed += weight * double(a->light) * (1 - double(pixel.scale[i]));
     r.color += color * weight;
     r.all.add(weight);
-    (a->frame < c.present ? r.past : a->frame > c.present ? r.future : r.present).add(weight);
+    (a->source < first ? r.past : a->source >= after ? r.future : r.present).add(weight);
     if (r.arrivals++ == 0) shift = double(a->light);
     const double light = double(a->light) - shift;
     r.light += weight * light;
@@ -102,7 +108,8 @@ glm::vec4 finite_color(const glm::dvec4& color) {
   return out;
 }
 
-void write_diagnostics(AccumulateDiagnostics& d, const PixelSums& r, const PixelWeights& pixel, int x, int y) {
+void write_diagnostics(AccumulateDiagnostics& d, const PixelContext& c, const PixelSums& r, const PixelWeights& pixel,
+                       int x, int y) {
   if (!d.weight.empty()) d.weight.at(x, y) = float(1 - r.present.sum / r.all.sum);
   if (!d.reject.empty() && !(r.past.sum + r.future.sum > 0)) d.reject.at(x, y) = kRejectEmptyHistory;
   if (!d.count_past.empty()) d.count_past.at(x, y) = r.past.count(), d.count_future.at(x, y) = r.future.count();
@@ -118,8 +125,9 @@ void write_diagnostics(AccumulateDiagnostics& d, const PixelSums& r, const Pixel
   int frames = 0;
   for (const Arrival* a : pixel.arrivals)
     if (a) {
-      std::uint64_t& word = seen[a->frame / 64];
-      const std::uint64_t bit = std::uint64_t(1) << (a->frame % 64);
+      const std::size_t frame = frame_of(*a, c.samples);
+      std::uint64_t& word = seen[frame / 64];
+      const std::uint64_t bit = std::uint64_t(1) << (frame % 64);
       frames += (word & bit) == 0;
       word |= bit;
     }
@@ -138,13 +146,13 @@ void write_pixel(Accumulated& out, const PixelContext& c, const PixelWeights& pi
   const double spread = r.all.squares / (r.all.sum * r.all.sum);
   out.history.total.at(x, y) = float(std::min(1 / spread, 1e6));
   out.history.spread.at(x, y) = float(spread);
-  write_diagnostics(out.diagnostics, r, pixel, x, y);
-  const Present& present = *c.sources[c.present].present;
+  write_diagnostics(out.diagnostics, c, r, pixel, x, y);
+  const Present& present = *c.sources[c.present * c.samples].present;
   for (std::size_t k = 0; k < out.history.companions.size(); ++k) {
     glm::dvec4 sum(0);
     for (std::size_t i = 0; i < pixel.weights.size(); ++i)
       if (const Arrival* a = pixel.arrivals[i]) {
-        const glm::vec4& sample = c.sources[a->frame].companion(k, a->pixel);
+        const glm::vec4& sample = c.sources[a->source].companion(k, a->pixel);
         const float gain = a->gain * pixel.scale[i];
         sum += (is_color(present, k) ? lit(sample, gain) : glm::dvec4(sample)) * double(pixel.weights[i]);
       }
@@ -171,10 +179,16 @@ Accumulated make_output(const Present& present, const DiagnosticsWanted& wanted)
 }
 
 /// A pixel that no sample reaches: what stands in for its own.
-void keep_present(Accumulated& out, const Present& present, int x, int y) {
-  out.history.color.at(x, y) = present.color.at(x, y);
+void keep_present(Accumulated& out, std::span<const GatherSource> own, int x, int y) {
+  const auto mean = [&](const auto& plane) {
+    glm::dvec4 sum(0);
+    for (const GatherSource& sample : own) sum += glm::dvec4(plane(*sample.present).at(x, y));
+    return finite_color(sum / double(own.size()));
+  };
+  out.history.color.at(x, y) = mean([](const Present& p) -> const Plane<glm::vec4>& { return p.color; });
   for (std::size_t k = 0; k < out.history.companions.size(); ++k)
-    out.history.companions[k].at(x, y) = present.companions[k].at(x, y);
+    out.history.companions[k].at(x, y) =
+        mean([k](const Present& p) -> const Plane<glm::vec4>& { return p.companions[k]; });
   if (!out.diagnostics.reject.empty()) out.diagnostics.reject.at(x, y) = kRejectEmptyHistory | kRejectPresent;
 }
 
@@ -191,14 +205,17 @@ SurfaceTest surface_test(const Present& present) {
 
 Accumulated gather(std::span<const GatherSource> sources, std::size_t present, const GatherParameters& parameters,
                    const SurfaceTest& test, const DiagnosticsWanted& wanted, Workers& workers, Isa isa) {
-  const Window& w = sources[present].window();
-  Accumulated out = make_output(*sources[present].present, wanted);
+  const std::size_t samples = samples_of(sources);
+  const std::span<const GatherSource> own = sources.subspan(present * samples, samples);
+  const Window& w = own.front().window();
+  Accumulated out = make_output(*own.front().present, wanted);
   if (w.empty()) return out;
 
   const std::vector<Carried> fields = carry_all(sources, present, test, workers);
   PixelContext context;
   context.sources = sources;
   context.present = present;
+  context.samples = samples;
   context.axis = cell_axis(parameters.filter, parameters.cells);
   context.sigma = parameters.sigma;
   context.change_limit = parameters.change_limit;
@@ -210,7 +227,7 @@ Accumulated gather(std::span<const GatherSource> sources, std::size_t present, c
   std::vector<BlockLists> lists(sources.size());
   workers.for_each(sources.size(), [&](std::size_t i, int) { lists[i] = list_blocks(sources[i], fields[i], grid); });
 
-  const LightRule light{parameters.gain && sources[present].local_light != nullptr, parameters.gain_dead_zone,
+  const LightRule light{parameters.gain && own.front().local_light != nullptr, parameters.gain_dead_zone,
                         parameters.gain_weight};
   std::vector<TileArrivals> arrivals(std::size_t(workers.count()));
   std::vector<PixelScratch> scratch(std::size_t(workers.count()));
@@ -225,7 +242,7 @@ Accumulated gather(std::span<const GatherSource> sources, std::size_t present, c
       for (int x = here.tile.x0; x < here.tile.x1; ++x) {
         const PixelWeights pixel = weigh_pixel(c, x, y, scratch[std::size_t(worker)]);
         if (pixel.arrivals.empty()) {
-          keep_present(out, *sources[present].present, x, y);
+          keep_present(out, own, x, y);
           ++restarted[std::size_t(worker)];
           continue;
         }
@@ -233,7 +250,7 @@ Accumulated gather(std::span<const GatherSource> sources, std::size_t present, c
       }
   });
   if (wanted.gather && present > 0)
-    measure_round_trip(sources[present], sources[present - 1], test, out.diagnostics.round_trip, workers);
+    measure_round_trip(own.front(), sources[(present - 1) * samples], test, out.diagnostics.round_trip, workers);
   for (const std::size_t n : restarted) out.counts.restarted += n;
   return out;
 }

@@ -35,7 +35,9 @@ inline int gather_reach(const GatherParameters& parameters) { return parameters.
 /// Surfaces can be told apart by what the files have.
 SurfaceTest surface_test(const Present& present);
 
-/// Resolves sources[present]; `sources` are consecutive frames of one shot, at most kMostGathered.
+/// Resolves frame `present` of the window; `sources` are consecutive frames of one shot, at most kMostGathered, frame
+/// after frame, with as many samples each. Every sample follows the sample of its number from frame to frame; those of
+/// all numbers meet in the pixel.
 Accumulated gather(std::span<const GatherSource> sources, std::size_t present, const GatherParameters& parameters,
                    const SurfaceTest& test, const DiagnosticsWanted& wanted, Workers& workers,
                    Isa isa = Isa::automatic);

@@ -120,8 +120,8 @@ void weigh_light(const Surfaces& s, const PixelContext& c, PixelScratch& scratch
     const auto begin = std::size_t(surface.begin);
     hold_fireflies({scratch.ordered.data() + begin, std::size_t(surface.count)}, c.firefly_limit,
                    scratch.scale.data() + begin, scratch.work);
-    turn_down_changed({scratch.ordered.data() + begin, std::size_t(surface.count)}, c.present, c.change_limit,
-                      scratch.weight.data() + begin);
+    turn_down_changed({scratch.ordered.data() + begin, std::size_t(surface.count)}, c.present, c.samples,
+                      c.change_limit, scratch.weight.data() + begin);
   }
 }
 

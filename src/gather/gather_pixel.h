@@ -23,7 +23,8 @@ struct CellAxis {
 /// What the pixels of a tile have in common.
 struct PixelContext {
   std::span<const GatherSource> sources;
-  std::size_t present = 0;
+  std::size_t present = 0;  ///< place of the resolved frame in the window of frames
+  std::size_t samples = 1;  ///< in each pixel of a frame
   const TileArrivals* arrivals = nullptr;
   CellAxis axis;
   double sigma = 0.09;

@@ -1,9 +1,10 @@
-// One frame as the gather sees it.
+// One sample per pixel of one frame as the gather sees it.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -18,10 +19,12 @@ struct LightRange {
   float own, low, high;
 };
 
-/// A frame of the window. `backward` and `forward` are undilated; either is NaN where nothing is known. All planes have
-/// the window of present->color.
+/// A frame of the window, or one of its samples where every pixel has several: they lie side by side, those of a frame
+/// together, each with vectors and light of its own. `backward` and `forward` are undilated; either is NaN where
+/// nothing is known. All planes have the window of present->color.
 struct GatherSource {
   const Present* present = nullptr;
+  std::size_t sample = 0;                          ///< counts within the frame; every frame has as many
   glm::dvec2 jitter{0};                            ///< sample position minus pixel centre, pixels
   bool repeats = false;                            ///< its samples are those of another frame: they count once, there
   const Plane<glm::vec2>* backward = nullptr;      ///< to the frame before; null: at rest
@@ -42,6 +45,11 @@ struct GatherSource {
     return plane.row(plane.window().y0 + int(pixel >> 16))[pixel & 0xFFFF];
   }
 };
+
+/// Samples in each pixel of a window of frames.
+inline std::size_t samples_of(std::span<const GatherSource> sources) {
+  return sources.empty() ? 1 : sources.back().sample + 1;
+}
 
 /// What a sample shows, as far as the files tell: an object and a distance.
 struct SurfaceKey {

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kRings = 10;  // up to 512 frames away
 
 /// Ring of a frame: 0 for the neighbors and the frame itself, then by octaves; odd for the past, even for the future.
-std::size_t ring_of(std::uint32_t frame, std::size_t present) {
+std::size_t ring_of(std::size_t frame, std::size_t present) {
   const bool past = frame < present;
   const std::size_t distance = past ? present - frame : frame - present;
   if (distance < 2) return 0;
@@ -27,12 +27,13 @@ struct Ring {
 
 }  // namespace
 
-void turn_down_changed(std::span<const Arrival* const> arrivals, std::size_t present, double limit, float* weights) {
+void turn_down_changed(std::span<const Arrival* const> arrivals, std::size_t present, std::size_t samples, double limit,
+                       float* weights) {
   if (!(limit > 0)) return;
   std::array<Ring, 2 * kRings> rings{};
   const double shift = double(arrivals.front()->light);
   for (const Arrival* a : arrivals) {
-    Ring& r = rings[ring_of(a->frame, present)];
+    Ring& r = rings[ring_of(frame_of(*a, samples), present)];
     const double light = double(a->light) - shift;
     r.sum += light;
     r.squares += light * light;
@@ -53,7 +54,8 @@ void turn_down_changed(std::span<const Arrival* const> arrivals, std::size_t pre
     const double beyond = error > 0 ? std::sqrt(squared / error) - limit : 1e6;
     turned[k] = float(1 / (1 + std::min(beyond * beyond, 1e6)));
   }
-  for (std::size_t i = 0; i < arrivals.size(); ++i) weights[i] *= turned[ring_of(arrivals[i]->frame, present)];
+  for (std::size_t i = 0; i < arrivals.size(); ++i)
+    weights[i] *= turned[ring_of(frame_of(*arrivals[i], samples), present)];
 }
 
 }  // namespace varve

@@ -26,7 +26,8 @@ constexpr CodecCost kNone{0.2, 0.9}, kLight{1.5, 3}, kZip{1.9, 6}, kPiz{5, 11}, 
 // vectors, depth test and diagnostics are set by their traffic and not measured yet.
 constexpr double kConvert = 1.5, kSanitize = 1.6, kMotion = 1.1, kInvert = 12, kDilate = 8.5, kHistory = 22,
                  kDepthTest = 1, kSampleWeights = 20, kBox = 28, kBlend = 8, kDiagnostic = 0.5, kCompanionMove = 250,
-                 kCompanion = 140, kCubic = 45, kBspline3 = 100, kBspline5 = 125, kUnjitter = 12, kSharpen = 33;
+                 kCompanion = 140, kCubic = 45, kBspline3 = 100, kBspline5 = 125, kResolveSample = 8, kUnjitter = 12,
+                 kSharpen = 33;
 
 // Two-sided passes each frame twice in each direction.
 constexpr double kTwoSidedPasses = 4;
@@ -145,6 +146,23 @@ std::size_t color_bytes(const SequenceInfo& info) {
   return bytes;
 }
 
+/// What meets a history: subjects, or what several of them are made to before.
+std::vector<Subject> accumulated(const SequenceInfo& info) {
+  if (info.first.outputs.empty()) return info.first.subjects;
+  std::vector<Subject> all;
+  for (const Subject* subject : accumulated_subjects(info.first.outputs, info.first.subjects)) all.push_back(*subject);
+  return all;
+}
+
+/// Presents of a frame that are there before they become fewer.
+std::size_t bytes_to_combine(const SequenceInfo& info) {
+  std::size_t bytes = 0;
+  for (const ColorOutput& output : info.first.outputs)
+    if (output.combine == Combine::samples && !output.after)
+      bytes += output.inputs.size() * pixels_of(info, info.first.subjects[output.inputs.front()]) * (16 + 4 + 8 + 4);
+  return bytes;
+}
+
 std::size_t diagnostic_bytes_per_pixel(const OutputRequest& output, Accumulator accumulator) {
   std::size_t bytes = 0;
   for (const Aov* aov : planned_aovs(output, accumulator))
@@ -176,8 +194,8 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
   // Planes of color beside the present: B-spline coefficients, the reconstructed present, the sharpened result.
   const std::size_t extra = 16 * std::size_t((filter == HistoryFilter::bspline3 || filter == HistoryFilter::bspline5) +
                                              plan.use_jitter + (parameters.finish.sharpen > 0));
-  std::size_t histories = 0, at_work = 0;
-  for (const Subject& subject : info.first.subjects) {
+  std::size_t histories = bytes_to_combine(info), at_work = 0;
+  for (const Subject& subject : accumulated(info)) {
     const std::size_t pixels = pixels_of(info, subject);
     // color, count and weight; depth of the last frame
     histories += pixels * (2 * (16 + 8) + (depth_test ? 4 : 0) + tested + masks + shown);
@@ -222,7 +240,7 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
   if (parameters.accumulator == Accumulator::gather) {
     if (parameters.finish.sharpen > 0) per_pixel += kSharpen;
     per_pixel += gather_nanoseconds(parameters);
-    for (const Subject& subject : info.first.subjects) nanoseconds += double(pixels_of(info, subject)) * per_pixel;
+    for (const Subject& subject : accumulated(info)) nanoseconds += double(pixels_of(info, subject)) * per_pixel;
     return nanoseconds * 1e-9 / std::max(1, threads);
   }
   per_pixel += kBlend + cost_of(recursive.history_filter);
@@ -233,7 +251,11 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
   if (parameters.finish.sharpen > 0) per_pixel += kSharpen;
   per_pixel += box_cost(parameters.rectify);
   const double passes = two_sided ? kTwoSidedPasses : 1;
-  for (const Subject& subject : info.first.subjects) {
+  for (const ColorOutput& made : info.first.outputs)
+    if (made.combine == Combine::samples)
+      nanoseconds += double(made.inputs.size()) * double(pixels_of(info, info.first.subjects[made.inputs.front()])) *
+                     (kConvert + kSanitize + kMotion + kResolveSample) * (two_sided ? 3 : 1);
+  for (const Subject& subject : accumulated(info)) {
     const double motion = !plan.use_motion ? 0 : subject.backward ? kMotion : subject.forward ? kMotion + kInvert : 0;
     const std::size_t planes = subject.companions.size();
     const double companions = planes == 0 ? 0 : kCompanionMove + double(planes) * (kCompanion + kConvert + kSanitize);

@@ -88,8 +88,9 @@ std::string sequence_text(const SequenceInfo& info) {
 
 std::string files_text(const SequenceInfo& info, const Plan& plan) {
   std::string text;
-  for (int f = 0; f < int(info.first.files.size()); ++f) {
-    const FileHeader& file = info.first.files[std::size_t(f)];
+  const std::vector<FileHeader>& files = files_on_disk(info.first);
+  for (int f = 0; f < int(files.size()); ++f) {
+    const FileHeader& file = files[std::size_t(f)];
     text += "\n" + file.path + "\n";
     for (int p = 0; p < int(file.parts.size()); ++p) {
       const Part& part = file.parts[std::size_t(p)];

@@ -55,7 +55,7 @@ std::string layer_json(const SequenceInfo& info, const Subject& s) {
 }
 
 std::string part_json(const SequenceInfo& info, const Plan& plan, int f, int p) {
-  const Part& part = info.first.files[std::size_t(f)].parts[std::size_t(p)];
+  const Part& part = files_on_disk(info.first)[std::size_t(f)].parts[std::size_t(p)];
   ChannelRef ref{f, p, 0};
   const std::string channels = array(part.channels, [&](const Channel& channel) {
     const bool read = std::find(plan.channels.begin(), plan.channels.end(), ref) != plan.channels.end();
@@ -78,7 +78,7 @@ std::string part_json(const SequenceInfo& info, const Plan& plan, int f, int p) 
 
 std::string files_json(const SequenceInfo& info, const Plan& plan) {
   int f = 0;
-  return array(info.first.files, [&](const FileHeader& file) {
+  return array(files_on_disk(info.first), [&](const FileHeader& file) {
     int p = 0;
     const std::string parts = array(file.parts, [&](const Part&) { return part_json(info, plan, f, p++); });
     ++f;
@@ -92,6 +92,15 @@ std::string plan_json(const Plan& plan) {
   });
   return object(
       {{"passes", passes}, {"bytes", whole(plan.bytes)}, {"seconds_per_frame", json_number(plan.seconds_per_frame)}});
+}
+
+std::string samples_json(const SequenceInfo& info) {
+  if (info.first.sample_jitter.empty()) return "null";
+  const ColorOutput& output = info.first.outputs.front();
+  return object({{"count", whole(output.inputs.size())},
+                 {"grid", info.first.grid > 1 ? std::to_string(info.first.grid) : "null"},
+                 {"mode", json_quote(output.after ? "each" : "resolve")},
+                 {"positions_known", boolean(info.first.jitter.has_value())}});
 }
 
 std::string statistics_json(const std::vector<ChannelStatistics>& statistics) {
@@ -125,6 +134,7 @@ std::string describe_json(const SequenceInfo& info, const Plan& plan,
                  {"windows", object({{"data_moves", boolean(info.windows_move)},
                                      {"display_differs", boolean(info.windows_differ)}})},
                  {"layers", array(info.first.subjects, [&](const Subject& s) { return layer_json(info, s); })},
+                 {"samples", samples_json(info)},
                  {"jitter", object({{"source", json_quote(info.jitter_source)},
                                     {"frames", std::to_string(info.frames_with_jitter)}})},
                  {"camera",

@@ -5,6 +5,7 @@
 
 #include "exr/convert.h"
 #include "exr/read_frame.h"
+#include "plan/find_samples.h"
 #include "plan/probe.h"
 
 namespace varve {
@@ -82,7 +83,7 @@ std::vector<ChannelStatistics> measure_pixels(const SequenceInfo& info, const In
         if (channel.ref.file == f) here.push_back(channel), refs.push_back(channel.ref);
       if (here.empty()) continue;
       const FileHeader& file = headers.files[std::size_t(f)];
-      const FramePixels pixels = read_channels(file, refs, workers);
+      const FramePixels pixels = read_shown_channels(headers, f, refs, workers);
       std::vector<ChannelStatistics> found(here.size());
       workers.for_each(here.size(), [&](std::size_t i, int) {
         const Part& part = file.parts[std::size_t(here[i].ref.part)];

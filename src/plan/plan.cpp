@@ -10,6 +10,7 @@
 #include "plan/describe_rectify.h"
 #include "plan/gather_plan.h"
 #include "plan/layers_plan.h"
+#include "plan/samples_plan.h"
 #include "plan/two_sided_plan.h"
 #include "plan/value.h"
 
@@ -313,8 +314,9 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   Planner planner(info, parameters, output, plan);
   planner.add("read", true, "");
   planner.add("sanitize", true, "pixels that are not finite are kept from spreading");
+  for (PlannedPass& pass : samples_passes(info, parameters, plan.notes)) plan.passes.push_back(std::move(pass));
   planner.motion();
-  if (!composites_after(info)) plan.passes.push_back(layers_pass(info));
+  if (!composites_after(info) && info.first.sample_jitter.empty()) plan.passes.push_back(layers_pass(info));
   if (parameters.accumulator == Accumulator::gather) {
     planner.gather();
   } else {

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
+#include "plan/find_samples.h"
 
 namespace varve {
 namespace {
@@ -134,6 +135,11 @@ struct Survey {
     if (matrices > 0) info.camera = "worldToCamera or worldToNDC in " + std::to_string(matrices) + of;
     if (matrices == 0 && notes > 0)
       info.camera = "view and proj in the attribute Note in " + std::to_string(notes) + of;
+    if (info.first.grid > 1) {
+      info.jitter_source = "the places of the samples in their grid" +
+                           (jitter.description.empty() ? std::string() : ", and " + jitter.description);
+      return;
+    }
     const std::string in = " in " + std::to_string(info.frames_with_jitter) + of;
     switch (jitter.kind) {
       case JitterSource::Kind::none:
@@ -178,7 +184,7 @@ void note_vectors(const SequenceInfo& info, std::vector<std::string>& notes) {
 }
 
 void note_parts(const SequenceInfo& info, std::vector<std::string>& notes) {
-  for (const FileHeader& file : info.first.files)
+  for (const FileHeader& file : files_on_disk(info.first))
     for (const Part& part : file.parts) {
       const std::string where = part.name.empty() ? file.path : "part " + part.name;
       if (is_deep(part)) notes.push_back(where + " is deep; it is passed through as it is");
@@ -205,6 +211,10 @@ FrameHeaders read_frame_headers(const InputSequence& input, int frame, const Rol
   try {
     headers.files.push_back(read_header(input.color.path(frame)));
     for (const SequencePattern& role : input.roles) headers.files.push_back(read_header(role.path(frame)));
+    if (roles.samples.mode != SampleMode::off) {
+      find_samples(headers, roles, jitter);
+      return headers;
+    }
     headers.subjects = find_subjects(headers.files, roles);
     headers.outputs = color_outputs(headers.files, headers.subjects, roles);
     const Subject& main = headers.subjects.front();

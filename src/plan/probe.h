@@ -25,8 +25,22 @@ struct FrameHeaders {
   std::vector<FileHeader> files;  ///< color file, then the role files
   std::vector<Subject> subjects;  ///< found again in each frame, since parts and channels may move
   std::vector<ColorOutput> outputs;
-  std::optional<Jitter> jitter;
+  std::optional<Jitter> jitter;                      ///< of samples, the mean of theirs, if each is known
+  std::vector<std::optional<Jitter>> sample_jitter;  ///< of each subject where they are samples; else empty
+  PassedOn passed_on;
+  int grid = 1;                    ///< files are shown as if each n x n pixels were n x n parts
+  std::vector<FileHeader> stored;  ///< as they are on disk, where `grid` is not 1
 };
+
+/// Where in its pixel a subject was sampled.
+inline std::optional<Jitter> jitter_of_subject(const FrameHeaders& headers, std::size_t subject) {
+  return headers.sample_jitter.empty() ? headers.jitter : headers.sample_jitter[subject];
+}
+
+/// The headers as they are on disk.
+inline const std::vector<FileHeader>& files_on_disk(const FrameHeaders& headers) {
+  return headers.stored.empty() ? headers.files : headers.stored;
+}
 
 /// Reads and checks the headers of one frame. Throws Failure(input) naming file and frame, or what find_subjects
 /// throws.

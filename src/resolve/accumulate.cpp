@@ -126,7 +126,7 @@ PresentView view_present(AccumulateView& v, const Present& present, const Rectif
   v.neighbors = read_rows(made.in_space.empty() ? present.color : made.in_space);
   v.weight = read_rows(present.valid);
   v.motion = read_rows(present.motion.empty() ? made.at_rest : present.motion);
-  v.sample_weight = read_rows(made.weighed.sample_weight);
+  v.sample_weight = read_rows(made.weighed.sample_weight.empty() ? present.sample_weight : made.weighed.sample_weight);
   v.radius = rectify.window / 2;
   made.rows_valid.assign(std::size_t(w.height() + 2 * v.radius), 0);
   std::copy(present.rows_valid.begin(), present.rows_valid.end(), made.rows_valid.begin() + v.radius);

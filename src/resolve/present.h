@@ -32,7 +32,9 @@ struct Present {
                                                  ///< empty
   Plane<float> valid;                    ///< 1 where color came finite from the file, 0 elsewhere and in the border
   std::vector<std::uint8_t> rows_valid;  ///< per row: 1 when every pixel of it is valid
-  std::optional<glm::dvec2> jitter;      ///< sample position minus pixel centre, pixels; none where it is not known
+  std::optional<glm::dvec2> jitter;  ///< sample position minus pixel centre, pixels; none where it is not known, and
+                                     ///< where color was reconstructed at the pixel centers
+  Plane<float> sample_weight;        ///< from how much it was reconstructed there, 1 on average; else empty
   Plane<glm::vec2> motion;   ///< backward motion, pixels, y down; NaN where unusable; empty: at rest. As stored, or
                              ///< dilated by follow_motion()
   Plane<glm::vec2> forward;  ///< the same to the next frame; empty unless asked for and in the file

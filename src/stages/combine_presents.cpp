@@ -6,6 +6,7 @@
 
 #include "layers/composite.h"
 #include "layers/transmittance.h"
+#include "samples/resolve_samples.h"
 
 namespace varve {
 namespace {
@@ -49,7 +50,8 @@ const Window& window_of(const FrameHeaders& headers, const ColorOutput& output) 
 std::vector<bool> are_single_subjects(const FrameHeaders& headers) {
   std::vector<bool> single;
   for (const ColorOutput& output : headers.outputs)
-    single.insert(single.end(), output.after ? output.inputs.size() : 1, output.after || output.inputs.size() == 1);
+    single.insert(single.end(), output.after ? output.inputs.size() : 1,
+                  output.after || output.combine != Combine::layers);
   return single;
 }
 
@@ -61,6 +63,11 @@ std::vector<Present> combine_presents(const FrameHeaders& headers, std::vector<P
     for (const std::size_t i : output.inputs) inputs.push_back(std::move(read[i]));
     if (output.combine == Combine::layers)
       inputs = combine_layers(headers, output, std::move(inputs), options, workers);
+    if (output.combine == Combine::samples && !output.after) {
+      Present one = resolve_samples(pointers(inputs), options.sample_filter, workers, options.show);
+      inputs.clear();
+      inputs.push_back(std::move(one));
+    }
     for (Present& present : inputs) accumulated.push_back(std::move(present));
   }
   return accumulated;

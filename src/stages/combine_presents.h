@@ -4,13 +4,15 @@
 #include <vector>
 
 #include "plan/probe.h"
+#include "resolve/choices.h"
 #include "resolve/present.h"
 
 namespace varve {
 
 struct CombineOptions {
   const RoleRequest& roles;
-  bool show = false;  ///< fill Present::combined
+  bool show = false;                                ///< fill Present::combined
+  SampleFilter sample_filter = SampleFilter::none;  ///< by which samples of known positions become one
 };
 
 /// The data window of the part that the output is written to.

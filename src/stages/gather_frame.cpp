@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kRoundTrip = 0.05;  // px: an inverted vector that misses its sample by more is none
 
-/// The frames of one subject, with what is made for them.
+/// The frames of one subject, with what is made for them: one of the samples of each pixel.
 struct SubjectFrames {
   const FrameWindow& window;
-  std::size_t subject;
+  std::size_t subject, sample;
   std::size_t first, last;  // held, of one shot
   const GatherParameters& parameters;
   GatherMemory& memory;
@@ -29,6 +29,7 @@ struct SubjectFrames {
   GatherSource bare(std::size_t i) const {
     GatherSource s;
     s.present = &present(i);
+    s.sample = sample;
     SurfaceBlocks& blocks = memory[i].blocks;
     if (blocks.blocks.empty()) blocks = summarize_surfaces(present(i));
     s.blocks = &blocks;
@@ -77,16 +78,19 @@ struct SubjectFrames {
       if (print(k) == print(i) && rank(k) < rank(i)) return true;
     return false;
   }
-
-  std::vector<GatherSource> sources(std::size_t begin, std::size_t end, std::size_t resolved) const {
-    std::vector<GatherSource> list;
-    for (std::size_t i = begin; i <= end; ++i) {
-      list.push_back(source(i));
-      list.back().repeats = repeats(i, begin, end, resolved);
-    }
-    return list;
-  }
 };
+
+/// Frame after frame, all samples of each.
+std::vector<GatherSource> sources(const std::vector<SubjectFrames>& samples, std::size_t begin, std::size_t end,
+                                  std::size_t resolved) {
+  std::vector<GatherSource> list;
+  for (std::size_t i = begin; i <= end; ++i)
+    for (const SubjectFrames& frames : samples) {
+      list.push_back(frames.source(i));
+      list.back().repeats = frames.repeats(i, begin, end, resolved);
+    }
+  return list;
+}
 
 std::size_t back(std::size_t index, int frames, std::size_t first) {
   return index - std::min(index - first, std::size_t(frames));
@@ -95,20 +99,24 @@ std::size_t ahead(std::size_t index, int frames, std::size_t last) {
   return index + std::min(last - index, std::size_t(frames));
 }
 
-/// A first, cheap picture of a frame, good enough to measure light in: its direct neighbors only, few cells.
-void make_light(const SubjectFrames& frames, std::size_t i, const GatherParameters& parameters) {
-  if (!frames.memory[i].light.empty()) return;
+/// A first, cheap picture of a frame, good enough to measure light in: its direct neighbors only, few cells. All
+/// samples are in it, and each looks at it with surfaces of its own.
+void make_light(const std::vector<SubjectFrames>& samples, std::size_t i, const GatherParameters& parameters) {
+  const SubjectFrames& any = samples.front();
+  if (!any.memory[i].light.empty()) return;
   GatherParameters pilot = parameters;
   pilot.gain = false;
   pilot.filter = SampleFilter::none;
   pilot.cells = std::min(parameters.cells, 2);
-  const std::size_t begin = back(i, 1, frames.first), end = ahead(i, 1, frames.last);
-  const Accumulated picture = gather(frames.sources(begin, end, i), i - begin, pilot, frames.test, {}, frames.workers);
-  Plane<float>& light = frames.memory[i].light;
-  light = local_light(picture.history.color, frames.present(i), frames.test, parameters.gain_window, frames.workers);
-  follow_sudden_light(light, picture.history.color, frames.present(i), frames.test, parameters.gain_window,
-                      frames.workers);
-  frames.memory[i].range = local_range(picture.history.color, frames.present(i), frames.test, frames.workers);
+  const std::size_t begin = back(i, 1, any.first), end = ahead(i, 1, any.last);
+  const Accumulated made = gather(sources(samples, begin, end, i), i - begin, pilot, any.test, {}, any.workers);
+  const Plane<glm::vec4>& picture = made.history.color;
+  for (const SubjectFrames& frames : samples) {
+    Plane<float>& light = frames.memory[i].light;
+    light = local_light(picture, frames.present(i), frames.test, parameters.gain_window, frames.workers);
+    follow_sudden_light(light, picture, frames.present(i), frames.test, parameters.gain_window, frames.workers);
+    frames.memory[i].range = local_range(picture, frames.present(i), frames.test, frames.workers);
+  }
 }
 
 /// Samples are named by 16 bits on each axis.
@@ -124,17 +132,21 @@ void check_size(const SourceFrame& frame, const Window& window) {
 
 }  // namespace
 
-Accumulated gather_frame(const FrameWindow& window, std::size_t subject, std::size_t index, std::size_t first,
-                         std::size_t last, const GatherParameters& parameters, GatherMemory& memory,
-                         const DiagnosticsWanted& wanted, Workers& workers) {
-  for (std::size_t i = first; i <= last; ++i) check_size(window[i], window[i].presents[subject].color.window());
-  std::erase_if(memory, [&](const auto& entry) { return entry.first < first || entry.first > last; });
-  const SubjectFrames frames{
-      window, subject, first, last, parameters, memory, surface_test(window[index].presents[subject]), workers};
+Accumulated gather_frame(const FrameWindow& window, std::span<const std::size_t> subjects, std::size_t index,
+                         std::size_t first, std::size_t last, const GatherParameters& parameters,
+                         std::vector<GatherMemory>& memory, const DiagnosticsWanted& wanted, Workers& workers) {
+  memory.resize(subjects.size());
+  std::vector<SubjectFrames> samples;
+  const SurfaceTest test = surface_test(window[index].presents[subjects.front()]);
+  for (std::size_t s = 0; s < subjects.size(); ++s) {
+    for (std::size_t i = first; i <= last; ++i) check_size(window[i], window[i].presents[subjects[s]].color.window());
+    std::erase_if(memory[s], [&](const auto& entry) { return entry.first < first || entry.first > last; });
+    samples.push_back({window, subjects[s], s, first, last, parameters, memory[s], test, workers});
+  }
   const std::size_t begin = back(index, parameters.reach, first), end = ahead(index, parameters.reach, last);
   if (parameters.gain)
-    for (std::size_t i = begin; i <= end; ++i) make_light(frames, i, parameters);
-  return gather(frames.sources(begin, end, index), index - begin, parameters, frames.test, wanted, workers);
+    for (std::size_t i = begin; i <= end; ++i) make_light(samples, i, parameters);
+  return gather(sources(samples, begin, end, index), index - begin, parameters, test, wanted, workers);
 }
 
 }  // namespace varve

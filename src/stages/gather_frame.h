@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "gather/gather.h"
 #include "stages/frame_window.h"
@@ -24,9 +26,10 @@ struct GatherFrame {
 using GatherMemory = std::map<std::size_t, GatherFrame>;
 
 /// Resolves the frame at `index` from the frames of `window` between `first` and `last`, all held; with a gain, the
-/// outermost frame on each side only serves the pilot of its neighbor.
-Accumulated gather_frame(const FrameWindow& window, std::size_t subject, std::size_t index, std::size_t first,
-                         std::size_t last, const GatherParameters& parameters, GatherMemory& memory,
-                         const DiagnosticsWanted& wanted, Workers& workers);
+/// outermost frame on each side only serves the pilot of its neighbor. Several subjects are samples of the same pixels:
+/// all of them make one result. `memory` has one entry for each.
+Accumulated gather_frame(const FrameWindow& window, std::span<const std::size_t> subjects, std::size_t index,
+                         std::size_t first, std::size_t last, const GatherParameters& parameters,
+                         std::vector<GatherMemory>& memory, const DiagnosticsWanted& wanted, Workers& workers);
 
 }  // namespace varve

@@ -66,7 +66,9 @@ void write_heat_maps(const CompareJob& job, const FramePair& pair, const Subject
     planes[std::size_t(c)] =
         float_channel(window, inside, [&](int x, int y) { return colors.b.at(x, y)[c] - colors.a.at(x, y)[c]; });
   planes[3] = float_channel(window, inside, [&](int x, int y) { return heat.at(x, y); });
-  OutputPart output{part, false, {}, Compression::zip};
+  OutputPart output;
+  output.source_part = part;
+  output.compression = Compression::zip;
   constexpr std::array<const char*, 4> names = {"difference.R", "difference.G", "difference.B", "heat"};
   for (std::size_t k = 0; k < names.size(); ++k)
     output.channels.push_back({{names[k], PixelType::float32, 1, 1, false}, &planes[k]});

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "exr/convert.h"
+#include "plan/find_samples.h"
 
 namespace varve {
 namespace {
@@ -25,7 +26,7 @@ FileSet read_refs(const FrameHeaders& headers, const std::vector<ChannelRef>& re
     std::vector<ChannelRef> here;
     for (const ChannelRef& ref : refs)
       if (ref.file == file && std::find(here.begin(), here.end(), ref) == here.end()) here.push_back(ref);
-    files.push_back(here.empty() ? FramePixels{} : read_channels(headers.files[std::size_t(file)], here, workers));
+    files.push_back(here.empty() ? FramePixels{} : read_shown_channels(headers, file, here, workers));
   }
   return files;
 }

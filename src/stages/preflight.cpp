@@ -89,12 +89,22 @@ void drop_finished(std::vector<ScheduledFrame>& schedule) {
 /// What was asked for; a sidecar by its numbers, since they may change under its name.
 std::string describe_jitter(const std::string& jitter) {
   std::string rows;
-  for (const auto& [frame, offset] : parse_jitter_source(jitter).table) {
-    char row[80];
+  const JitterSource source = parse_jitter_source(jitter);
+  char row[100];
+  for (const auto& [frame, offset] : source.table) {
     std::snprintf(row, sizeof row, "%d:%.17g,%.17g ", frame, offset.x, offset.y);
     rows += row;
   }
+  for (const auto& [place, offset] : source.further) {
+    std::snprintf(row, sizeof row, "%d.%d:%.17g,%.17g ", place.first, place.second, offset.x, offset.y);
+    rows += row;
+  }
   return rows.empty() ? jitter : "table:" + hash_of(rows);
+}
+
+std::string samples_text(const SampleRequest& samples) {
+  return (samples.mode == SampleMode::each ? "each" : "resolve") +
+         (samples.grid > 0 ? ",grid:" + std::to_string(samples.grid) : std::string());
 }
 
 std::filesystem::path canonical(const std::string& path) { return std::filesystem::weakly_canonical(path); }
@@ -171,6 +181,7 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
   for (const std::string& channels : job.roles.channels) text += " channels=" + channels;
   if (!job.roles.channels.empty())
     text += std::string(" channel-weights=") + (job.roles.channel_weights == ChannelWeights::own ? "own" : "beauty");
+  if (job.roles.samples.mode != SampleMode::off) text += " samples=" + samples_text(job.roles.samples);
   for (const auto& [role, channel] : job.roles.map) text += " map:" + role + "=" + channel;
   for (const Subject& subject : info.first.subjects) {
     const MotionEncoding& e = subject.backward ? subject.backward_encoding : subject.forward_encoding;

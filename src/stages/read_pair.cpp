@@ -18,7 +18,8 @@ FrameHeaders read_side(const SequencePattern& pattern, const CompareJob& job, Ro
                        std::string& note) {
   InputSequence input{pattern, {}};
   if (motion && job.motion) input.roles.push_back(*job.motion);
-  const JitterSource none{JitterSource::Kind::none, {}, nullptr, {}, {}};
+  JitterSource none;
+  none.kind = JitterSource::Kind::none;
   const bool wants_color = std::ranges::any_of(job.channels, [](const std::string& c) { return c == "color"; });
   if (!motion) roles.convention = "none";
   try {

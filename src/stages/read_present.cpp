@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "exr/convert.h"
+#include "plan/find_samples.h"
 
 namespace varve {
 namespace {
@@ -139,6 +140,26 @@ Plane<glm::vec3> read_transmittance(const TransmittanceChannels& from, const Fil
   return plane;
 }
 
+/// Every channel of a part that is passed on.
+template <class Add>
+void add_whole_part(const FrameHeaders& headers, int part, const Add& add) {
+  const std::vector<ChannelRef>& dropped = headers.passed_on.dropped;
+  const std::size_t channels = headers.files.front().parts[std::size_t(part)].channels.size();
+  for (int channel = 0; channel < int(channels); ++channel)
+    if (std::find(dropped.begin(), dropped.end(), ChannelRef{0, part, channel}) == dropped.end())
+      add({0, part, channel});
+}
+
+/// Parts of file 0 that cannot be copied as they are, because samples in it are used up.
+std::vector<int> parts_to_rewrite(const FrameHeaders& headers) {
+  std::vector<int> parts;
+  if (headers.grid > 1)
+    for (int p = 0; p < int(headers.files.front().parts.size()); ++p) parts.push_back(p);
+  for (const ChannelRef& ref : headers.passed_on.dropped) parts.push_back(ref.part);
+  for (const auto& [ref, name] : headers.passed_on.renamed) parts.push_back(ref.part);
+  return parts;
+}
+
 std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const ChannelNeeds& needs, int file) {
   std::vector<ChannelRef> wanted;
   const auto add = [&](ChannelRef ref) {
@@ -162,11 +183,11 @@ std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const Chan
     if (needs.motion && vectors) add((*vectors)[0]), add((*vectors)[1]);
     if (needs.forward && subject.forward) add((*subject.forward)[0]), add((*subject.forward)[1]);
     if (!needs.whole_parts || file != 0) continue;
-    for (const int part : parts_of(subject)) {
-      const std::size_t channels = headers.files.front().parts[std::size_t(part)].channels.size();
-      for (int channel = 0; channel < int(channels); ++channel) add({0, part, channel});
-    }
+    for (const int part : parts_of(subject)) add_whole_part(headers, part, add);
   }
+  // Parts that lose channels are written anew as well, though nothing in them is resolved.
+  if (needs.whole_parts && file == 0)
+    for (const int part : parts_to_rewrite(headers)) add_whole_part(headers, part, add);
   return wanted;
 }
 
@@ -175,7 +196,7 @@ std::vector<ChannelRef> channels_to_read(const FrameHeaders& headers, const Chan
 FileSet read_files(const FrameHeaders& headers, const ChannelNeeds& needs, Workers& workers) {
   FileSet pixels;
   for (int file = 0; file < int(headers.files.size()); ++file)
-    pixels.push_back(read_channels(headers.files[std::size_t(file)], channels_to_read(headers, needs, file), workers));
+    pixels.push_back(read_shown_channels(headers, file, channels_to_read(headers, needs, file), workers));
   return pixels;
 }
 

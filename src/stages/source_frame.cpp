@@ -4,6 +4,7 @@
 
 #include "stages/check_same_subjects.h"
 #include "stages/combine_presents.h"
+#include "stages/place_samples.h"
 
 namespace varve {
 
@@ -37,11 +38,18 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, Workers& 
     const Part& part = source.headers.files.front().parts[std::size_t(part_of(subject))];
     presents.push_back(read_present(subject, source.pixels, part.data_window, part.display_window, read,
                                     options.into_working_space, source.vectors_bad, workers));
-    if (const auto& jitter = source.headers.jitter) presents.back().jitter = glm::dvec2(jitter->x, jitter->y);
+    if (const auto jitter = jitter_of_subject(source.headers, presents.size() - 1))
+      presents.back().jitter = glm::dvec2(jitter->x, jitter->y);
   }
-  source.presents =
-      combine_presents(source.headers, std::move(presents), {options.job.roles, options.show_combined}, workers);
-  if (!options.keep_pixels) source.pixels.clear();
+  // The gather filters by itself, from true positions.
+  const Parameters& p = options.job.parameters;
+  const SampleFilter filter = p.accumulator == Accumulator::gather ? SampleFilter::none : p.recursive.sample_filter;
+  source.presents = combine_presents(source.headers, std::move(presents),
+                                     {options.job.roles, options.show_combined, filter}, workers);
+  if (options.keep_pixels)
+    divide_passed_vectors(source.headers, source.pixels.front(), workers);
+  else
+    source.pixels.clear();
   return source;
 }
 

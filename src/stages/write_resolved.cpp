@@ -103,10 +103,32 @@ void keep_pixels(RawPlane& to, const FramePixels& pixels, int part, int channel)
     to.storage.fill(std::byte{0});
 }
 
+/// The name under which a channel of the source is written.
+std::string passed_on_name(const PassedOn& passed_on, const Channel& channel, ChannelRef ref) {
+  for (const auto& [renamed, name] : passed_on.renamed)
+    if (renamed == ref) return name;
+  return channel.name;
+}
+
+bool is_dropped(const PassedOn& passed_on, ChannelRef ref) {
+  return std::find(passed_on.dropped.begin(), passed_on.dropped.end(), ref) != passed_on.dropped.end();
+}
+
+/// What becomes of a part that holds nothing that is resolved.
+enum class Beside { copied, rewritten, left_out };
+Beside beside(const PassedOn& passed_on, const Part& part, int p) {
+  std::size_t dropped = 0, renamed = 0;
+  for (const ChannelRef& ref : passed_on.dropped) dropped += ref.part == p;
+  for (const auto& [ref, name] : passed_on.renamed) renamed += ref.part == p;
+  if (dropped == 0 && renamed == 0) return Beside::copied;
+  return dropped == part.channels.size() ? Beside::left_out : Beside::rewritten;
+}
+
 /// Companions of a subject that lie in part `p`, in their stored types. Where the part reaches beyond the subject's
 /// window, its channels stay as they were where they are kept.
 void add_companions(FileOutput& out, OutputPart& to, const Part& part, int p, const FramePixels& pixels,
-                    const ResolvedSubject& resolved, const ColorConversion* conversion, Workers& workers) {
+                    const ResolvedSubject& resolved, const PassedOn& passed_on, const ColorConversion* conversion,
+                    Workers& workers) {
   std::atomic<std::size_t> overflows = 0;
   for (std::size_t i = 0; i < resolved.subject->companions.size(); ++i) {
     const Companion& companion = resolved.subject->companions[i];
@@ -129,6 +151,7 @@ void add_companions(FileOutput& out, OutputPart& to, const Part& part, int p, co
         overflows += store_row(channel.type, row.data(), plane.row(y - part.data_window.y0) + left, common.width());
       });
       to.channels.push_back({channel, &plane});
+      to.channels.back().channel.name = passed_on_name(passed_on, channel, *ref);
     }
   }
   out.half_overflows += overflows;
@@ -147,10 +170,15 @@ std::set<std::string> stale_diagnostics(const Subject& subject) {
 }
 
 /// The part's other channels as they were, unless one of that name is written already or is out of date.
-void add_kept(OutputPart& to, const Part& part, const std::vector<RawPlane>& pixels, std::set<std::string> taken) {
+void add_kept(OutputPart& to, const Part& part, int p, const std::vector<RawPlane>& pixels, const PassedOn& passed_on,
+              std::set<std::string> taken) {
   for (const OutputChannel& channel : to.channels) taken.insert(channel.channel.name);
-  for (std::size_t c = 0; c < part.channels.size(); ++c)
-    if (!taken.contains(part.channels[c].name)) to.channels.push_back({part.channels[c], &pixels[c]});
+  for (std::size_t c = 0; c < part.channels.size(); ++c) {
+    const ChannelRef ref{0, p, int(c)};
+    Channel channel = part.channels[c];
+    channel.name = passed_on_name(passed_on, channel, ref);
+    if (!is_dropped(passed_on, ref) && taken.insert(channel.name).second) to.channels.push_back({channel, &pixels[c]});
+  }
 }
 
 }  // namespace
@@ -166,7 +194,7 @@ std::string aov_channel(const Aov& aov, const Subject& subject, bool several, st
 
 FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
                           const std::vector<ResolvedSubject>& subjects, const std::vector<const Aov*>& aovs, bool keep,
-                          const ColorConversion* out_of_working_space, Workers& workers) {
+                          const PassedOn& passed_on, const ColorConversion* out_of_working_space, Workers& workers) {
   FileOutput out;
   const bool several = several_layers(subjects);
   for (int p = 0; p < int(source.parts.size()); ++p) {
@@ -175,15 +203,16 @@ FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
     to.source_part = p;
     std::set<std::string> stale;
     for (const ResolvedSubject& resolved : subjects) {
-      add_companions(out, to, part, p, pixels, resolved, out_of_working_space, workers);
+      add_companions(out, to, part, p, pixels, resolved, passed_on, out_of_working_space, workers);
       if (resolved.subject->place.part != p) continue;
       stale.merge(stale_diagnostics(*resolved.subject));
       add_color(out, to, resolved, out_of_working_space, workers);
       add_diagnostics(out, to, resolved, aovs, several, workers);
     }
-    to.copy_chunks = to.channels.empty();
-    if (to.copy_chunks && !keep) continue;
-    if (!to.copy_chunks && keep) add_kept(to, part, pixels.planes[std::size_t(p)], std::move(stale));
+    const Beside otherwise = beside(passed_on, part, p);
+    if (to.channels.empty() && (!keep || otherwise == Beside::left_out)) continue;
+    to.copy_chunks = to.channels.empty() && otherwise == Beside::copied;
+    if (!to.copy_chunks && keep) add_kept(to, part, p, pixels.planes[std::size_t(p)], passed_on, std::move(stale));
     out.parts.push_back(std::move(to));
   }
   return out;

@@ -40,10 +40,10 @@ std::string aov_channel(const Aov& aov, const Subject& subject, bool several_lay
 
 /// The source's parts with the resolved color and its companions in place. With `keep`, other channels stand beside
 /// them and parts without any are copied; without, only resolved channels are written. `aovs` are added to each
-/// subject's part.
+/// subject's part. `passed_on` says what of the source is used up.
 FileOutput resolved_parts(const FileHeader& source, const FramePixels& pixels,
                           const std::vector<ResolvedSubject>& subjects, const std::vector<const Aov*>& aovs, bool keep,
-                          const ColorConversion* out_of_working_space, Workers& workers);
+                          const PassedOn& passed_on, const ColorConversion* out_of_working_space, Workers& workers);
 
 /// Only the diagnostic planes, in the parts of their subjects.
 FileOutput diagnostic_parts(const FileHeader& source, const std::vector<ResolvedSubject>& subjects,

@@ -107,8 +107,12 @@ std::vector<Sample> arrivals(std::span<const GatherSource> sources, const std::v
         const Present& p = *sources[f].present;
         if (!(p.valid.at(x, y) > 0)) continue;
         const SurfaceKey key = surface_at(p, x, y);
-        found.push_back(
-            {at, moved, {key.id, float(carried[f][i].z)}, double(key.depth), f, glm::dvec4(p.color.at(x, y))});
+        found.push_back({at,
+                         moved,
+                         {key.id, float(carried[f][i].z)},
+                         double(key.depth),
+                         f / samples_of(sources),
+                         glm::dvec4(p.color.at(x, y))});
       }
   }
   return found;
@@ -261,12 +265,13 @@ std::vector<Look> look(std::span<const GatherSource> sources, const std::vector<
     const Window& w = sources[f].window();
     for (int y = w.y0; y < w.y1; ++y)
       for (int x = w.x0; x < w.x1; ++x) {
-        const glm::dvec2 at = sources[f].position(x, y) + tracks[f].moved - corner;
+        const Track& track = tracks[f / samples_of(sources)];
+        const glm::dvec2 at = sources[f].position(x, y) + track.moved - corner;
         if (!(at.x >= -reach && at.y >= -reach && at.x < 1 + reach && at.y < 1 + reach)) continue;
         if (!(sources[f].present->valid.at(x, y) > 0)) continue;
         const SurfaceKey key = surface_at(*sources[f].present, x, y);
-        const bool hit = test.same(key, {id, float(tracks[f].depth)});
-        if (hit || double(key.depth) > tracks[f].depth) seen.push_back({at - glm::dvec2(0.5), tracks[f].weight, hit});
+        const bool hit = test.same(key, {id, float(track.depth)});
+        if (hit || double(key.depth) > track.depth) seen.push_back({at - glm::dvec2(0.5), track.weight, hit});
       }
   }
   return seen;
@@ -277,21 +282,22 @@ std::vector<Look> look(std::span<const GatherSource> sources, const std::vector<
 std::vector<CarriedSamples> carry_samples(std::span<const GatherSource> sources, std::size_t present,
                                           const SurfaceTest& test) {
   std::vector<CarriedSamples> carried(sources.size());
+  const std::size_t samples = samples_of(sources), first = present * samples, last = first + samples - 1;
   const auto carry = [&](std::size_t f, const Plane<glm::vec2>* vectors, int toward) {
     const GatherSource& s = sources[f];
     const Window& w = s.window();
     for (int y = w.y0; y < w.y1; ++y)
       for (int x = w.x0; x < w.x1; ++x) {
         const SurfaceKey key = surface_at(*s.present, x, y);
-        if (f == present) {
+        if (f >= first && f <= last) {
           carried[f].push_back({0, 0, double(key.depth)});
           continue;
         }
         const glm::dvec2 v = vectors ? glm::dvec2(vectors->at(x, y)) : glm::dvec2(0);
         glm::dvec3 found(kNan);
         for (int steps = 1; steps <= 2 && !(found.x == found.x); ++steps) {
-          const int to = int(f) + toward * steps;
-          if (toward > 0 ? to > int(present) : to < int(present)) continue;
+          const int to = int(f) + toward * steps * int(samples);
+          if (toward > 0 ? to > int(last) : to < int(first)) continue;
           const glm::dvec2 way = v * double(steps);
           found = glm::dvec3(way, 0) +
                   read(carried[std::size_t(to)], sources[std::size_t(to)], s.position(x, y) + way, key, test);
@@ -299,9 +305,9 @@ std::vector<CarriedSamples> carry_samples(std::span<const GatherSource> sources,
         carried[f].push_back(found);
       }
   };
-  carry(present, nullptr, 0);
-  for (std::size_t f = present + 1; f < sources.size(); ++f) carry(f, sources[f].backward, -1);
-  for (std::size_t f = present; f-- > 0;) carry(f, sources[f].forward, 1);
+  for (std::size_t f = first; f <= last; ++f) carry(f, nullptr, 0);
+  for (std::size_t f = last + 1; f < sources.size(); ++f) carry(f, sources[f].backward, -1);
+  for (std::size_t f = first; f-- > 0;) carry(f, sources[f].forward, 1);
   return carried;
 }
 
@@ -309,12 +315,18 @@ glm::dvec4 gathered_pixel(std::span<const GatherSource> sources, std::size_t pre
                           const std::vector<CarriedSamples>& carried, const GatherParameters& parameters,
                           const SurfaceTest& test, int x, int y) {
   const Cells cells = cells_of(parameters);
-  const Window& w = sources[present].window();
+  const std::size_t samples = samples_of(sources);
+  const Window& w = sources[present * samples].window();
   const glm::dvec2 corner(x, y), middle(x + 0.5, y + 0.5), reach(cells.reach);
   const glm::dvec2 tile(w.x0 + (x - w.x0) / 16 * 16, w.y0 + (y - w.y0) / 16 * 16);
   std::vector<Sample> in_tile = arrivals(sources, carried, tile - reach, tile + glm::dvec2(16) + reach);
   const std::vector<Sample> found = arrivals(sources, carried, corner - reach, corner + glm::dvec2(1) + reach);
-  if (found.empty()) return glm::dvec4(sources[present].present->color.at(x, y));
+  if (found.empty()) {
+    glm::dvec4 mean(0);
+    for (std::size_t s = 0; s < samples; ++s)
+      mean += glm::dvec4(sources[present * samples + s].present->color.at(x, y)) / double(samples);
+    return mean;
+  }
   if (layers(in_tile, test).size() < 2) in_tile.clear();
   const std::vector<std::vector<Sample>> list = layers(found, test);
   const std::size_t n = cells.center.size();
@@ -324,7 +336,7 @@ glm::dvec4 gathered_pixel(std::span<const GatherSource> sources, std::size_t pre
     const bool last = k + 1 == list.size();
     std::vector<Look> seen;
     if (!last)
-      seen = look(sources, follow(list[k], in_tile, tile, middle, sources.size(), present, test),
+      seen = look(sources, follow(list[k], in_tile, tile, middle, sources.size() / samples, present, test),
                   list[k].front().key.id, corner, cells.reach, test);
     std::vector<double> weights;
     for (const Look& l : seen) weights.push_back(l.weight);

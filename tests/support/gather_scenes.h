@@ -25,6 +25,7 @@ struct ShotOptions {
   glm::ivec2 window_motion{0, 0};  ///< of the data window, pixels per frame
   bool ids = true, depths = true, jitter = true;
   int companions = 0;  ///< the first has 1/3 of the color, the second the rest
+  int samples = 1;     ///< in each pixel of a frame
 };
 
 /// Frames with all that the gather wants of them. Sources point into it.
@@ -35,12 +36,15 @@ struct Shot {
   std::vector<SurfaceBlocks> blocks;
   std::vector<Plane<float>> light;
   std::vector<Plane<LightRange>> range;
+  std::size_t samples = 1;
 
   SurfaceTest test() const { return surface_test(presents.front()); }
+  /// Frame after frame, all samples of each.
   std::vector<GatherSource> sources(std::size_t begin, std::size_t end) const {
     std::vector<GatherSource> list;
-    for (std::size_t i = begin; i < end; ++i) {
+    for (std::size_t i = begin * samples; i < end * samples; ++i) {
       GatherSource s;
+      s.sample = i % samples;
       s.present = &presents[i];
       s.jitter = jitter[i];
       s.backward = &backward[i];
@@ -51,7 +55,7 @@ struct Shot {
     }
     return list;
   }
-  std::vector<GatherSource> sources() const { return sources(0, presents.size()); }
+  std::vector<GatherSource> sources() const { return sources(0, presents.size() / samples); }
   /// The light of each frame as its own samples show it.
   void measure_light(int edge, Workers& workers) {
     light.clear(), range.clear();
@@ -71,10 +75,12 @@ inline double halton(int i, int base) {
 
 inline Shot take(const World& world, const ShotOptions& o, Workers& workers) {
   Shot shot;
-  for (int f = 0; f < o.frames; ++f) {
+  shot.samples = std::size_t(o.samples);
+  for (int i = 0; i < o.frames * o.samples; ++i) {
+    const int f = i / o.samples;
     const Window w{o.window.x0 + f * o.window_motion.x, o.window.y0 + f * o.window_motion.y,
                    o.window.x1 + f * o.window_motion.x, o.window.y1 + f * o.window_motion.y};
-    const glm::dvec2 jitter = o.jitter ? glm::dvec2(halton(f + 1, 2) - 0.5, halton(f + 1, 3) - 0.5) : glm::dvec2(0);
+    const glm::dvec2 jitter = o.jitter ? glm::dvec2(halton(i + 1, 2) - 0.5, halton(i + 1, 3) - 0.5) : glm::dvec2(0);
     Present p;
     p.color = Plane<glm::vec4>(w, kPresentBorder, glm::vec4(0));
     for (int k = 0; k < o.companions; ++k) p.companions.emplace_back(w, kPresentBorder, glm::vec4(0));

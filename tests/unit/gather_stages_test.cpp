@@ -253,7 +253,7 @@ class Change : public testing::Test {
     std::vector<const Arrival*> list;
     for (const Arrival& a : arrivals) list.push_back(&a);
     std::vector<float> weights(list.size(), 1);
-    turn_down_changed(list, 16, limit, weights.data());
+    turn_down_changed(list, 16, 1, limit, weights.data());
     return {double(weights.back()), double(weights.front())};
   }
   std::mt19937 random{4};

@@ -18,7 +18,7 @@ double worst_difference(const ShotOptions& options, std::size_t present, const G
   const std::vector<GatherSource> sources = shot.sources();
   const auto carried = reference::carry_samples(sources, present, shot.test());
   const Accumulated fast = gather(sources, present, parameters, shot.test(), {}, workers);
-  const Window& w = sources[present].window();
+  const Window& w = sources[present * shot.samples].window();
   std::vector<double> worst(std::size_t(w.height()), 0.0);
   workers.for_rows(w.y0, w.y1, [&](int y) {
     for (int x = w.x0; x < w.x1; ++x) {
@@ -61,6 +61,17 @@ TEST(GatherTwin, SameWhateverTheFilesHave) {
                                1, plain(4, SampleFilter::none), workers),
               2e-6)
               << ids << depths << motion.x << jitter;
+}
+
+TEST(GatherTwin, SameWithSeveralSamplesInEachPixel) {
+  Workers workers(2);
+  for (const int samples : {2, 3})
+    for (const bool ids : {true, false})
+      EXPECT_LT(worst_difference(
+                    {.frames = 5, .window = {0, 0, 21, 19}, .window_motion = {1, 0}, .ids = ids, .samples = samples}, 2,
+                    plain(3, SampleFilter::none), workers),
+                2e-6)
+          << samples << ids;
 }
 
 TEST(GatherTwin, CarriesTheSame) {
