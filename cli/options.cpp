@@ -80,9 +80,10 @@ void add_file_options(std::vector<Option>& rows) {
   add({"cuts", 0, "LIST", kEach & ~kProbe, kBasic, group, "First frames of new shots; history does not cross them.",
        frames([](auto& s) -> auto& { return s.job.cuts; })});
   add({"find-cuts", 0, "WORD", kResolve, kAdvanced, group,
-       "Whether cuts are looked for in the pixels of the main layer, too, and told with the evidence. Moves of the "
-       "camera "
-       "and changes of light are none. With --resume, frames behind a cut that was found are done again.",
+       "Whether cuts are looked for in the pixels of the main layer, too, and told with the evidence: every frame is "
+       "read once more, before the work begins. Moves of the camera, changes of light, and flashes of one or two "
+       "frames "
+       "are none.",
        word(
            [](auto& s) -> auto& { return s.job.find_cuts; }, kFindCuts)});
   add({"resume", 0, "", kResolve, kBasic, group,
@@ -145,12 +146,14 @@ void add_channel_options(std::vector<Option>& rows) {
        pattern([](auto& s) -> auto& { return s.motion_files; })})
       .completes = Completes::files;
   add({"jitter", 0, "SOURCE", kInput, kAdvanced, group,
-       "Where in its pixel each frame was sampled. auto reads the header; a CSV file has the columns frame,jx,jy, "
+       "Where in its pixel each frame was sampled. auto reads the header; pixels measures it, between all frames on "
+       "disk, at rest or along the vectors, and stops where they do not tell; a CSV file has the columns frame,jx,jy, "
        "sample position minus pixel center in pixels, y down, as `varve jitter` writes it; patterns are those of "
        "`varve "
        "help patterns`, with a seed of 0 and a direction of 0. With --samples the columns are frame,sample,jx,jy.",
        text(
-           [](auto& s) -> auto& { return s.job.jitter; }, "auto, none, a CSV file or a pattern such as halton23:16")})
+           [](auto& s) -> auto& { return s.job.jitter; },
+           "auto, none, pixels, a CSV file or a pattern such as halton23:16")})
       .completes = Completes::files;
   add({"camera", 0, "SOURCE", kInput, kAdvanced, group,
        "Where the camera of each frame is told. auto reads worldToCamera and worldToNDC, or view and proj in the JSON "
@@ -290,6 +293,15 @@ void add_run_options(std::vector<Option>& rows) {
        "Read the pixels of this many frames, spread over the sequence, and print the range of each channel. 0 reads "
        "headers only.",
        number([](auto& s) -> auto& { return s.pixels; }, {0, 1000000})});
+  add({"check-jitter", 0, "FRAMES", kProbe, kBasic, group,
+       "Measure where in its pixel each of this many frames was sampled, from their pixels, and hold it against the "
+       "jitter that is stated: scale, signs, axes, one frame early or late, no jitter at all, a seed that stays. 0 "
+       "looks at none.",
+       number([](auto& s) -> auto& { return s.jitter_frames; }, {0, 1000000})});
+  add({"facts", 0, "", kProbe, kBasic, group,
+       "Read the pixels of all frames and tell what happens besides motion, with the evidence: cuts, flashes, frames "
+       "that are held or doubled, steps of the exposure, missing frames.",
+       flag([](auto& s) -> auto& { return s.facts; })});
   add({"motion", 0, "", kProbe, kBasic, group,
        "Hold the motion vectors against the pixels of frames spread over the sequence: which reading of them agrees "
        "(direction, axes, unit, bias, scale, jitter), what speaks for it, and what is wrong with them.",

@@ -1,4 +1,5 @@
 // varve probe.
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <vector>
@@ -6,13 +7,22 @@
 #include "base/error.h"
 #include "commands.h"
 #include "plan/describe.h"
+#include "stages/check_jitter.h"
 #include "stages/probe_motion.h"
+#include "stages/sequence_facts.h"
 #include "stages/settle_layers.h"
 #include "stages/vector_table.h"
 
 namespace varve::cli {
-
 namespace {
+
+/// One more section, or one more member at the end of the object.
+void add_to(std::string& text, bool json, const char* member, const std::string& value, const std::string& section) {
+  if (json)
+    text.insert(text.rfind('}'), std::string(",\"") + member + "\":" + value);
+  else
+    text += section;
+}
 
 // Vectors that nobody told the convention of stop a probe by headers; where the pixels are asked, they need not.
 ResolveJob readable(const ResolveJob& job, bool asks_pixels) {
@@ -30,30 +40,32 @@ int run_probe(Settings& settings) {
   finish_job(settings);
   const SettledLayers ordered = settle_layers(readable(settings.job, settings.motion));
   const ResolveJob& job = ordered.job;
-  const JitterSource jitter = parse_jitter_source(job.jitter);
+  JitterSource jitter = parse_jitter_source(job.jitter);
+  Workers workers(job.threads);
+  if (jitter.kind == JitterSource::Kind::pixels) jitter = measured_jitter(job, workers);
   const SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter, parse_camera_source(job.camera));
   Plan plan = make_plan(info, job.parameters, job.request, job.threads);
   if (!ordered.note.empty()) plan.notes.push_back(ordered.note);
   std::vector<ChannelStatistics> statistics;
-  if (settings.pixels > 0) {
-    Workers workers(job.threads);
-    statistics = measure_pixels(info, job.input, job.roles, jitter, settings.pixels, workers);
-  }
+  if (settings.pixels > 0) statistics = measure_pixels(info, job.input, job.roles, jitter, settings.pixels, workers);
   std::optional<MotionReport> motion;
-  if (settings.motion) {
-    Workers workers(job.threads);
-    motion = probe_motion(settings.job, info.frames, {}, workers);
-  }
-  std::optional<VectorTable> vectors;
-  if (settings.vectors > 0) {
-    Workers workers(job.threads);
-    vectors = inspect_vectors(job, info, plan, jitter, settings.vectors, workers);
-  }
+  if (settings.motion) motion = probe_motion(settings.job, info.frames, {}, workers);
   std::string text = settings.json ? describe_json(info, plan, statistics, motion ? motion_json(*motion) : "")
                                    : describe_text(info, plan, statistics) + (motion ? motion_text(*motion) : "");
-  if (vectors && !settings.json) text += vector_table_text(*vectors);
-  if (vectors && settings.json)  // one more member of the object
-    text.insert(text.rfind('}'), ",\"vectors\":" + vector_table_json(*vectors));
+  if (settings.jitter_frames > 0) {
+    std::vector<int> frames = info.frames;
+    frames.resize(std::min(frames.size(), std::size_t(settings.jitter_frames)));
+    const JitterCheck check = check_jitter(job, frames, jitter, workers);
+    add_to(text, settings.json, "jitter_check", jitter_check_json(check), jitter_check_text(check));
+  }
+  if (settings.facts) {
+    const SequenceFacts facts = find_facts(job, info.frames, {}, workers);
+    add_to(text, settings.json, "facts", facts_json(facts), facts_text(facts));
+  }
+  if (settings.vectors > 0) {
+    const VectorTable vectors = inspect_vectors(job, info, plan, jitter, settings.vectors, workers);
+    add_to(text, settings.json, "vectors", vector_table_json(vectors), vector_table_text(vectors));
+  }
   std::fputs(text.c_str(), stdout);
   if (!text.ends_with('\n')) std::fputc('\n', stdout);
   return int(ExitCode::done);

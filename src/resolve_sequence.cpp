@@ -10,12 +10,14 @@
 #include "exr/write_frame.h"
 #include "plan/preset.h"
 #include "stages/accumulate_frame.h"
-#include "stages/find_cut.h"
+#include "stages/check_jitter.h"
+#include "stages/combine_resolved.h"
 #include "stages/follow_motion.h"
 #include "stages/frame_window.h"
 #include "stages/place_samples.h"
 #include "stages/preflight.h"
 #include "stages/previews.h"
+#include "stages/sequence_facts.h"
 #include "stages/settle_layers.h"
 #include "stages/settle_vectors.h"
 #include "stages/two_sided_pass.h"
@@ -53,16 +55,18 @@ class Stopwatch {
 
 Setup set_up(const SettledLayers& ordered) {
   const ResolveJob& job = ordered.job;
-  const JitterSource jitter = parse_jitter_source(job.jitter);
+  JitterSource jitter = parse_jitter_source(job.jitter);
+  if (jitter.kind == JitterSource::Kind::pixels) {
+    Workers workers(job.threads);
+    jitter = measured_jitter(job, workers);
+  }
   CameraSource cameras = parse_camera_source(job.camera);
   SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter, cameras);
   check_roles(job, info);
-  // By the time that its pixels show a cut, a frame has met those after it already.
-  if (job.find_cuts && job.parameters.accumulator != Accumulator::recursive)
-    throw Failure(ExitCode::usage,
-                  "--find-cuts goes frame by frame, and this --accumulator looks ahead; name the first frames of shots "
-                  "with --cuts, or give --accumulator recursive");
   Plan plan = make_plan(info, job.parameters, job.request, job.threads);
+  if (job.find_cuts)
+    plan.passes.push_back(
+        {"find cuts", true, "before all else, color and vectors of every frame within reach are read once more"});
   if (!ordered.note.empty()) plan.notes.push_back(ordered.note);
   Setup s{job,
           std::move(info),
@@ -114,25 +118,20 @@ FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& worker
   });
 }
 
-/// Decides whether a frame begins a new shot, before it meets its history: marks it in the schedule if so, and says
-/// why. `before` becomes the trace of this frame.
-void look_for_cut(const SourceFrame& source, FrameTrace& before, ScheduledFrame& scheduled, const ResolveEvents& events,
-                  Workers& workers) {
-  const Present& present = source.presents.front();
-  const Subject& subject = *accumulated_subjects(source.headers.outputs, source.headers.subjects).front();
-  const Part& part = source.headers.files.front().parts[std::size_t(part_of(subject))];
-  FrameTrace now = trace_of(present, part, scheduled.frame, workers);
-  if (!scheduled.restart) {
-    const CutEvidence evidence = judge_cut(before, now, present);
-    if (evidence.cut) {
-      scheduled.restart = true;
-      scheduled.restart_reason = "cut found: " + evidence.sentence;
-      if (events.warning)
-        events.warning("frame " + std::to_string(scheduled.frame) + " is taken for the first of a new shot: " +
-                       evidence.sentence + "; --find-cuts off lets history pass");
-    }
+/// Cuts in the pixels, and what else is worth a word, before any frame meets another.
+std::map<int, std::string> look_for_cuts(const Setup& s, const ResolveEvents& events, const std::function<bool()>& stop,
+                                         Workers& workers) {
+  const SequenceFacts facts = find_facts(s.job, frames_in_reach(s.job, s.info), stop, workers);
+  for (const SequenceFact& fact : facts.facts) {
+    if (!events.warning || fact.kind == SequenceFact::Kind::gap) continue;
+    const std::string frame = "frame " + std::to_string(fact.frame);
+    if (fact.kind == SequenceFact::Kind::cut)
+      events.warning(frame + " is taken for the first of a new shot: " + fact.evidence +
+                     "; --find-cuts off lets history pass");
+    else
+      events.warning(frame + " (" + name_of(fact.kind) + "): " + fact.evidence);
   }
-  before = std::move(now);
+  return facts.cuts();
 }
 
 /// What is written where that is not what the history keeps; else empty. What stands in for a pixel is sharpened too.
@@ -243,13 +242,15 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
   if (events.planned) events.planned(s.info, s.plan);
 
   // Preflight: what will be written, and whether it can be.
+  Workers workers(job.threads);
+  ResolveSummary summary;
+  const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
   std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash);
   check_outputs(job, schedule);
+  if (job.find_cuts) schedule = schedule_frames(job, s.info, s.hash, look_for_cuts(s, events, stop, workers));
 
-  Workers workers(job.threads);
   if (job.check_motion && s.plan.use_motion) check_vectors(job, s.info, events.warning, workers);
   std::vector<SubjectState> states(accumulated_subjects(s.info.first.outputs, s.info.first.subjects).size());
-  FrameTrace trace;
   std::set<std::string> told;
   const bool recursive = job.parameters.accumulator == Accumulator::recursive;
   CameraTrack camera_track = s.info.cameras;
@@ -273,10 +274,8 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
     return source;
   };
   FrameWindow window(read);
-  ResolveSummary summary;
   int total = 0, done = 0;
   for (const ScheduledFrame& scheduled : schedule) total += scheduled.write;
-  const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
 
   const AccumulatorOptions accumulator{job.parameters, s.gather, s.aovs};
   const bool gathers = job.parameters.accumulator == Accumulator::gather;
@@ -314,10 +313,6 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
     tell_of_cameras(source, told, events);
 
     // Resolve, subject by subject.
-    if (job.find_cuts) {
-      look_for_cut(source, trace, scheduled, events, workers);
-      report.restart = scheduled.restart_reason;
-    }
     std::vector<Resolved> resolved = two_sided ? accumulate_two_sided(*two_sided, i, source)
                                      : gathers
                                          ? accumulate_gather(accumulator, window, i, {first, last}, states, workers)

@@ -110,9 +110,9 @@ struct Synth {
 };
 
 void check(const SynthJob& job, const Synth& synth) {
-  if (job.jitter == "auto")
+  if (job.jitter == "auto" || job.jitter == "pixels")
     throw Failure(ExitCode::usage,
-                  "--jitter auto: there is no header to read yet; give none, halton23:16 or a CSV file");
+                  "--jitter " + job.jitter + ": there is no header to read yet; give none, halton23:16 or a CSV file");
   if (job.layers && job.samples > 1)
     throw Failure(ExitCode::usage, "--layers and --samples cannot be combined; ask for one of them");
   if (job.samples > 1 && synth.jitter.kind == JitterSource::Kind::table)

@@ -155,13 +155,18 @@ JitterSource parse_jitter_source(const std::string& text) {
   JitterSource source;
   source.kind = JitterSource::Kind::none;
   if (text == "none") return source;
+  if (text == "pixels") {
+    source.kind = JitterSource::Kind::pixels;
+    source.description = "to be measured in the pixels";
+    return source;
+  }
   if (const std::optional<NamedPattern> named = parse_pattern(text)) return pattern_source(*named);
   std::error_code ignored;
   const bool looks_like_file = text.find_first_of("./") != std::string::npos || std::filesystem::exists(text, ignored);
   if (!looks_like_file)
     throw Failure(ExitCode::usage,
                   "--jitter " + text +
-                      ": unknown; it takes auto, none, a CSV file, or a pattern such as halton23:16 (see varve help "
+                      ": unknown; it takes auto, none, pixels, a CSV file, or a pattern such as halton23:16 (see varve help "
                       "patterns)");
   return read_sidecar(text);
 }
@@ -190,6 +195,7 @@ Jitter pattern_point(std::span<const Jitter> points, int frame) {
 std::optional<Jitter> jitter_of(const JitterSource& source, const Part& part, int frame) {
   switch (source.kind) {
     case JitterSource::Kind::none:
+    case JitterSource::Kind::pixels:
       return std::nullopt;
     case JitterSource::Kind::pattern:
       return pattern_point(source.points, frame);

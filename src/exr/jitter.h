@@ -12,10 +12,10 @@
 
 namespace varve {
 
-/// What `--jitter` names: `auto`, `none`, a CSV file (frame,jx,jy), or a pattern such as `halton23:16`
+/// What `--jitter` names: `auto`, `none`, `pixels`, a CSV file (frame,jx,jy), or a pattern such as `halton23:16`
 /// (the index of frame f is f modulo the length, 1-based as renderers count: f = 1 is the first point).
 struct JitterSource {
-  enum class Kind { automatic, none, table, pattern } kind = Kind::automatic;
+  enum class Kind { automatic, none, table, pattern, pixels } kind = Kind::automatic;
   std::map<int, Jitter> table;                    ///< by frame, of sample 0
   std::map<std::pair<int, int>, Jitter> further;  ///< by frame and sample, of the others
   bool by_sample = false;                         ///< the table has a column for samples
@@ -34,7 +34,7 @@ JitterSource with_samples(JitterSource source, int samples);
 Jitter pattern_point(std::span<const Jitter> points, int frame);
 
 /// Jitter of a frame; none when the source does not know it. `automatic` reads the attribute `jitter` (v2f) and the
-/// JSON in Cycles' `Note` of the part, and nothing else.
+/// JSON in Cycles' `Note` of the part, and nothing else. `pixels` knows none: it has to be measured first.
 std::optional<Jitter> jitter_of(const JitterSource& source, const Part& part, int frame);
 
 /// The same of one of `samples` samples in each pixel, whose part is `part`. A pattern gives the first frame its first

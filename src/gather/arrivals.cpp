@@ -29,9 +29,11 @@ TileSpan tiles_around(const GatherSource& source, const TileGrid& grid, double l
   return s;
 }
 
-/// Calls use(x, y) with the position, without the jitter, of each sample of a block that could be followed.
+/// Calls use(x, y) with the position, without the jitter, of each sample of a block that could be followed; for none of
+/// a frame that repeats another.
 template <class Use>
 void for_each_landing(const GatherSource& source, const Carried& field, int bx, int by, const Use& use) {
+  if (source.repeats) return;
   const Window& w = source.window();
   const int x1 = std::min(w.x0 + (bx + 1) * kTile, w.x1), y1 = std::min(w.y0 + (by + 1) * kTile, w.y1);
   for (int y = w.y0 + by * kTile; y < y1; ++y)

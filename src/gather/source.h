@@ -26,6 +26,7 @@ struct GatherSource {
   const Present* present = nullptr;
   std::size_t sample = 0;                          ///< counts within the frame; every frame has as many
   glm::dvec2 jitter{0};                            ///< sample position minus pixel centre, pixels
+  bool repeats = false;                            ///< its samples are those of another frame: they count once, there
   const Plane<glm::vec2>* backward = nullptr;      ///< to the frame before; null: at rest
   const Plane<glm::vec2>* forward = nullptr;       ///< to the frame after; null: at rest
   const Plane<LightRange>* light_range = nullptr;  ///< local_range(); null: no test of it

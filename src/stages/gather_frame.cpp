@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "diagnose/color_print.h"
 #include "gather/opposite_vectors.h"
 #include "gather/round_trip.h"
 #include "gather/shading_gain.h"
@@ -80,13 +81,34 @@ struct SubjectFrames {
       s.local_light = &made->second.light, s.light_range = &made->second.range;
     return s;
   }
+
+  std::uint64_t print(std::size_t i) const {
+    std::optional<std::uint64_t>& made = memory[i].print;
+    if (!made) made = color_print(present(i).color, workers);
+    return *made;
+  }
+
+  /// A held or doubled frame shows nothing new: of frames that are the same to the last bit, the one nearest to the
+  /// resolved frame counts, the earlier of two. Vectors are followed through the others.
+  bool repeats(std::size_t i, std::size_t begin, std::size_t end, std::size_t resolved) const {
+    const auto rank = [&](std::size_t k) {
+      return k > resolved ? 2 * (k - resolved) : k == resolved ? 0 : 2 * (resolved - k) - 1;
+    };
+    for (std::size_t k = begin; k <= end && print(i) != 0; ++k)
+      if (print(k) == print(i) && rank(k) < rank(i)) return true;
+    return false;
+  }
 };
 
 /// Frame after frame, all samples of each.
-std::vector<GatherSource> sources(const std::vector<SubjectFrames>& samples, std::size_t begin, std::size_t end) {
+std::vector<GatherSource> sources(const std::vector<SubjectFrames>& samples, std::size_t begin, std::size_t end,
+                                  std::size_t resolved) {
   std::vector<GatherSource> list;
   for (std::size_t i = begin; i <= end; ++i)
-    for (const SubjectFrames& frames : samples) list.push_back(frames.source(i));
+    for (const SubjectFrames& frames : samples) {
+      list.push_back(frames.source(i));
+      list.back().repeats = frames.repeats(i, begin, end, resolved);
+    }
   return list;
 }
 
@@ -107,7 +129,7 @@ void make_light(const std::vector<SubjectFrames>& samples, std::size_t i, const 
   pilot.filter = SampleFilter::none;
   pilot.cells = std::min(parameters.cells, 2);
   const std::size_t begin = back(i, 1, any.first), end = ahead(i, 1, any.last);
-  const Accumulated made = gather(sources(samples, begin, end), i - begin, pilot, any.test, {}, any.workers);
+  const Accumulated made = gather(sources(samples, begin, end, i), i - begin, pilot, any.test, {}, any.workers);
   const Plane<glm::vec4>& picture = made.history.color;
   for (const SubjectFrames& frames : samples) {
     Plane<float>& light = frames.memory[i].light;
@@ -145,7 +167,7 @@ Accumulated gather_frame(const FrameWindow& window, std::span<const std::size_t>
   const std::size_t begin = back(index, parameters.reach, first), end = ahead(index, parameters.reach, last);
   if (parameters.gain)
     for (std::size_t i = begin; i <= end; ++i) make_light(samples, i, parameters);
-  return gather(sources(samples, begin, end), index - begin, parameters, test, wanted, workers);
+  return gather(sources(samples, begin, end, index), index - begin, parameters, test, wanted, workers);
 }
 
 }  // namespace varve

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,8 +20,9 @@ struct GatherFrame {
   MotionRepair backward_said, forward_said;  ///< what the test of the file's vectors said; empty without one
   SeenPlanes seen;                           ///< what they are tested by; empty until then
   SurfaceBlocks blocks;
-  Plane<float> light;       ///< local_light() of the pilot; empty until it is needed
-  Plane<LightRange> range;  ///< local_range() of it
+  std::optional<std::uint64_t> print;  ///< color_print() of the frame
+  Plane<float> light;                  ///< local_light() of the pilot; empty until it is needed
+  Plane<LightRange> range;             ///< local_range() of it
 };
 
 /// By place in the schedule; frames that are passed are forgotten.

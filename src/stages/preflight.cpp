@@ -57,13 +57,16 @@ std::vector<ScheduledFrame> frames_between(const ResolveJob& job, const Sequence
   return schedule;
 }
 
-void mark_restarts(std::vector<ScheduledFrame>& schedule, const std::vector<int>& cuts) {
+void mark_restarts(std::vector<ScheduledFrame>& schedule, const std::vector<int>& cuts,
+                   const std::map<int, std::string>& found) {
   for (std::size_t i = 0; i < schedule.size(); ++i) {
     ScheduledFrame& s = schedule[i];
     if (i == 0)
       s.restart_reason = "first frame";
     else if (std::find(cuts.begin(), cuts.end(), s.frame) != cuts.end())
       s.restart_reason = "cut";
+    else if (const auto cut = found.find(s.frame); cut != found.end())
+      s.restart_reason = "cut found: " + cut->second;
     else if (s.frame != schedule[i - 1].frame + 1)
       s.restart_reason = "gap after frame " + std::to_string(schedule[i - 1].frame);
     s.restart = !s.restart_reason.empty();
@@ -124,10 +127,17 @@ std::filesystem::path canonical(const std::string& path) { return std::filesyste
 
 }  // namespace
 
-std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash) {
+std::vector<int> frames_in_reach(const ResolveJob& job, const SequenceInfo& info) {
+  std::vector<int> frames;
+  for (const ScheduledFrame& s : frames_between(job, info, reach_of(job))) frames.push_back(s.frame);
+  return frames;
+}
+
+std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash,
+                                            const std::map<int, std::string>& found_cuts) {
   const FrameReach reach = reach_of(job);
   std::vector<ScheduledFrame> schedule = frames_between(job, info, reach);
-  mark_restarts(schedule, job.cuts);
+  mark_restarts(schedule, job.cuts, found_cuts);
   if (job.resume) {
     for (std::size_t i = 0; i < schedule.size(); ++i) {
       ScheduledFrame& s = schedule[i];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,8 +33,13 @@ struct ScheduledFrame {
 };
 
 /// Frames in order: requested ones are written, existing ones between them and within reach around them are only made
-/// use of. With --resume, frames that no unfinished frame depends on are left out.
-std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash);
+/// use of. `found_cuts` begin shots besides those of the job; with the evidence. With --resume, frames that no
+/// unfinished frame depends on are left out.
+std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash,
+                                            const std::map<int, std::string>& found_cuts = {});
+
+/// The same frames, whether they are done or not: those that cuts are to be looked for in.
+std::vector<int> frames_in_reach(const ResolveJob& job, const SequenceInfo& info);
 
 /// The frames that the vectors of schedule[index] lead to.
 NeighborFrames neighbors_of(const std::vector<ScheduledFrame>& schedule, std::size_t index);

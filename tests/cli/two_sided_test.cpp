@@ -169,7 +169,6 @@ TEST_F(TwoSidedCli, AStoppedRunLeavesNoSpillFile) {
 TEST_F(TwoSidedCli, OneThingWrong) {
   synth("pan", "1-3");
   expect_refused(resolve("pan", "o", {"--accumulator", "recursive", "--spill", "."}), 2, "--spill");
-  expect_refused(resolve("pan", "o", {"--find-cuts", "on"}), 2, "--cuts");
   expect_refused(resolve("pan", "o", {"--rule", "off"}), 2, "--rule");
   expect_refused(resolve("pan", "o", {"--feedback", "luma"}), 2, "--feedback fixed");
   expect_refused(resolve("pan", "o", {"--on-reject", "blur"}), 2, "--on-reject restart");

@@ -97,17 +97,18 @@ Present picture(const Window& w, unsigned seed, float light, Workers& workers) {
 TEST(FindCut, ExposureAloneIsNoEvidence) {
   Workers workers(1);
   const Window w{0, 0, 200, 120};
-  const Part part;
   const Present dark = picture(w, 4, 1, workers);
   for (const float light : {1e-6f, 0.25f, 8.0f, 1e6f}) {
     const Present lit = picture(w, 4, light, workers);
-    const CutEvidence e = judge_cut(trace_of(dark, part, 1, workers), trace_of(lit, part, 2, workers), lit);
+    const CutEvidence e =
+        judge_cut(trace_of(dark, dark.motion, {}, 1, workers), trace_of(lit, lit.motion, {}, 2, workers));
     EXPECT_FALSE(e.cut);
     EXPECT_LT(e.unexplained, 1e-9);
     EXPECT_LT(e.distance, 1e-3);
   }
   const Present other = picture(w, 5, 1, workers);
-  const CutEvidence e = judge_cut(trace_of(dark, part, 1, workers), trace_of(other, part, 2, workers), other);
+  const CutEvidence e =
+      judge_cut(trace_of(dark, dark.motion, {}, 1, workers), trace_of(other, other.motion, {}, 2, workers));
   EXPECT_TRUE(e.cut) << e.judged << " " << e.sentence;
 }
 
@@ -115,27 +116,28 @@ TEST(FindCut, CamerasAreComparedByTheirTurn) {
   Workers workers(1);
   const Window w{0, 0, 120, 80};
   const Present p = picture(w, 4, 1, workers);
-  const auto camera = [](double degrees, double scale) {
+  const auto camera = [](double degrees, double scale) -> std::optional<std::vector<double>> {
     const double c = std::cos(degrees * 3.14159265358979 / 180), s = std::sin(degrees * 3.14159265358979 / 180);
-    Part part;
-    part.attributes.push_back({"worldToCamera", "m44f", "", {c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0, 5, 6, 7, 1}});
-    for (double& n : part.attributes[0].numbers) n *= scale;
-    return part;
+    std::vector<double> matrix = {c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0, 5, 6, 7, 1};
+    for (double& n : matrix) n *= scale;
+    return matrix;
   };
   for (const double turn : {0.0, 3.0, 40.0, 170.0}) {
-    const CutEvidence e =
-        judge_cut(trace_of(p, camera(10, 1), 1, workers), trace_of(p, camera(10 + turn, 100), 2, workers), p);
+    const CutEvidence e = judge_cut(trace_of(p, p.motion, camera(10, 1), 1, workers),
+                                    trace_of(p, p.motion, camera(10 + turn, 100), 2, workers));
     EXPECT_NEAR(e.turned, turn, 1e-4);
     EXPECT_FALSE(e.cut);  // the picture is the same: a matrix alone decides nothing
     EXPECT_EQ(e.sentence.find("turned") != std::string::npos, turn > 1) << e.sentence;
   }
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(judge_cut(trace_of(p, camera(10, 0), 1, workers), trace_of(p, camera(nan, 1), 2, workers), p).turned, 0);
+  EXPECT_EQ(
+      judge_cut(trace_of(p, p.motion, camera(10, 0), 1, workers), trace_of(p, p.motion, camera(nan, 1), 2, workers))
+          .turned,
+      0);
 }
 
 TEST(FindCut, HostilePicturesAreJudgedWithoutHarm) {
   Workers workers(1);
-  const Part part;
   const Window w{0, 0, 50, 46};
   std::vector<Present> all;
   for (const float value : {0.0f, -5.0f, 3e38f, 1e-45f})
@@ -145,10 +147,10 @@ TEST(FindCut, HostilePicturesAreJudgedWithoutHarm) {
   all.push_back(test::noise_present({-9, 0, 300, 7}, {1, 0.5, 1e9, 0.5, false, 1e30f}, workers));
   for (const Present& a : all)
     for (const Present& b : all) {
-      const CutEvidence e = judge_cut(trace_of(a, part, 1, workers), trace_of(b, part, 2, workers), b);
+      const CutEvidence e = judge_cut(trace_of(a, a.motion, {}, 1, workers), trace_of(b, b.motion, {}, 2, workers));
       EXPECT_TRUE(std::isfinite(e.distance) && std::isfinite(e.unexplained) && std::isfinite(e.judged));
     }
-  EXPECT_FALSE(judge_cut({}, trace_of(all[0], part, 1, workers), all[0]).cut);
+  EXPECT_FALSE(judge_cut({}, trace_of(all[0], all[0].motion, {}, 1, workers)).cut);
 }
 
 }  // namespace
