@@ -16,7 +16,8 @@ MainFrame read_main_frame(const InputSequence& input, int frame, const RoleReque
   headers.subjects.resize(1);
   Subject& subject = headers.subjects.front();
   subject.companions.clear();
-  const FileSet pixels = in_frame(frame, [&] { return read_files(headers, {.motion = true}, workers); });
+  DeepFrame untold;
+  const FileSet pixels = in_frame(frame, [&] { return read_files(headers, {.motion = true}, untold, workers); });
   const Part& part = headers.files.front().parts[std::size_t(part_of(subject))];
   ReadOptions options;
   options.motion = motion;

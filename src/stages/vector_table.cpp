@@ -87,15 +87,17 @@ VectorTable inspect_vectors(const ResolveJob& job, const SequenceInfo& info, con
                             const JitterSource& jitter, int pairs, Workers& workers) {
   Plan reads = plan;
   reads.use_motion = reads.use_forward = reads.use_depth = reads.use_id = true;
-  const SourceOptions options{job, info, reads, jitter, nullptr, false, false};
+  const CameraSource cameras = parse_camera_source(job.camera);
+  CameraTrack track = info.cameras;
+  const SourceOptions options{job, info, reads, jitter, cameras, track, nullptr, false, false};
   RepairParameters parameters = job.parameters.repair;
   parameters.mode = RepairMotion::check;
   VectorTable table;
   table.pairs = neighbors_among(info.frames, pairs);
   std::map<std::tuple<std::size_t, std::uint32_t>, ObjectVectors> objects;
   for (const auto& [before, after] : table.pairs) {
-    const SourceFrame earlier = read_source_frame(options, before, workers),
-                      later = read_source_frame(options, after, workers);
+    const SourceFrame earlier = read_source_frame(options, before, {{}, after}, workers),
+                      later = read_source_frame(options, after, {before, {}}, workers);
     const Names names = names_of(later.headers);
     for (std::size_t k = 0; k < std::min(later.presents.size(), later.headers.subjects.size()); ++k) {
       const Subject& subject = later.headers.subjects[k];
