@@ -34,7 +34,9 @@ Residual residual_of(const std::string& pattern, int frame, const std::string& l
   const FrameHeaders headers = read_frame_headers(job.input, frame, job.roles, {});
   const CamerasAround cameras = cameras_around(headers, {frame - 1, frame + 1}, job, {}, {}, track).front();
   Workers workers(2);
-  const FileSet pixels = read_files(headers, {.depth = true, .motion = true, .forward = true, .id = true}, workers);
+  DeepFrame untold;
+  const FileSet pixels =
+      read_files(headers, {.depth = true, .motion = true, .forward = true, .id = true}, untold, workers);
   const Subject& subject = headers.subjects.front();
   const Part& part = headers.files[0].parts[std::size_t(part_of(subject))];
   std::size_t bad = 0;

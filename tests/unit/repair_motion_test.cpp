@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "vector_residual_reference.h"
+#include "reference/vector_residual_reference.h"
 
 namespace varve {
 namespace {
