@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/error.h"
 #include "exr/channel_index.h"
 
 namespace varve {
@@ -143,6 +144,10 @@ std::vector<ColorOutput> color_outputs(std::span<const FileHeader> files, std::s
     for (const Subject& subject : subjects) outputs.push_back({subject, {outputs.size()}});
     return outputs;
   }
+  if (!request.channels.empty() && request.channel_weights == ChannelWeights::own)
+    throw Failure(ExitCode::usage,
+                  "--channel-weights own makes colors of --channels, which --layers would take for layers; give "
+                  "--channel-weights beauty, or leave --layers out");
   const bool deep = std::any_of(subjects.begin(), subjects.end(), [&](const Subject& subject) {
     return is_deep(files.front().parts[std::size_t(part_of(subject))]);
   });

@@ -142,6 +142,8 @@ TEST_F(LayersCli, WhatCannotBeDoneIsRefusedWithARemedy) {
   };
   refused({"--layers", "composite"}, 2, "--layer");
   refused({"--layers", "each", "--layer", "fg,nothing"}, 4, "nothing");
+  refused({"--layers", "each", "--layer", "fg,mid", "--channels", "bg", "--channel-weights", "own"}, 2,
+          "--channel-weights beauty");
   refused({"--layers", "each", "--layer", "fg,mid", "--transmittance", "layer"}, 4, "--transmittance alpha");
 }
 
