@@ -43,6 +43,7 @@ bool repair(DeepSample& sample, DeepDefects& defects) {
 bool is_before(const DeepSample& a, const DeepSample& b) {
   if (a.front != b.front) return a.front < b.front;
   if (a.back != b.back) return a.back < b.back;
+  if (a.back == a.front) return a.index < b.index;
   for (int k = 0; k < 4; ++k)
     if (a.opacity[k] != b.opacity[k]) return a.opacity[k] < b.opacity[k];
   for (int k = 0; k < 4; ++k)

@@ -29,8 +29,9 @@ struct DeepDefects {
 /// left out.
 bool repair(DeepSample& sample, DeepDefects& defects);
 
-/// Front to back: by front, then back. Samples that coincide are told apart by what they hold, so that sums do not
-/// depend on the order in which they were stored.
+/// Front to back: by front, then back. Points in one place lie in the order in which they are stored, which is all that
+/// tells it (OpenEXR's own compositing does the same); volumes that coincide are told apart by what they hold, so that
+/// sums do not depend on that order.
 bool is_before(const DeepSample& a, const DeepSample& b);
 
 }  // namespace varve

@@ -39,37 +39,10 @@ double seen_through(double depth) { return depth > 0 ? -std::expm1(-depth) / dep
 // What a sample sends from within, where its color is what leaves its front.
 double emission(double opacity, double depth) { return opacity > 0 ? depth / opacity : 1; }
 
-// Points in one place, samples first <= i < last.
-void see_points(std::span<const double> opacity, std::span<double> visibility, std::size_t first, std::size_t last,
-                double& transmittance) {
-  if (last - first == 1) {
-    visibility[first] = transmittance;
-    transmittance *= 1 - opacity[first];
-    return;
-  }
-  std::size_t walls = 0;
-  double depth = 0;
-  for (std::size_t i = first; i < last; ++i) {
-    if (opacity[i] < 1)
-      depth += depth_of(opacity[i]);
-    else
-      ++walls;
-  }
-  for (std::size_t i = first; i < last; ++i) {
-    if (walls > 0)
-      visibility[i] = opacity[i] < 1 ? 0 : transmittance / double(walls);
-    else
-      visibility[i] = transmittance * seen_through(depth) * emission(opacity[i], depth_of(opacity[i]));
-  }
-  transmittance *= walls > 0 ? 0 : std::exp(-depth);
-}
-
-std::size_t end_of_points(const DeepLayout& layout, std::size_t first) {
-  std::size_t last = first + 1;
-  while (last < layout.ranges.size() && layout.ranges[last].first == layout.ranges[first].first &&
-         layout.ranges[last].last == layout.ranges[first].first)
-    ++last;
-  return last;
+void see_point(std::span<const double> opacity, std::span<double> visibility, std::size_t sample,
+               double& transmittance) {
+  visibility[sample] = transmittance;
+  transmittance *= 1 - opacity[sample];
 }
 
 }  // namespace
@@ -103,11 +76,7 @@ void find_visibility(const DeepLayout& layout, std::span<const double> opacity, 
   const std::size_t samples = layout.ranges.size();
   double transmittance = 1;
   if (!layout.volumes) {
-    for (std::size_t i = 0; i < samples;) {
-      const std::size_t end = end_of_points(layout, i);
-      see_points(opacity, visibility, i, end, transmittance);
-      i = end;
-    }
+    for (std::size_t i = 0; i < samples; ++i) see_point(opacity, visibility, i, transmittance);
     return;
   }
   const auto is_volume = [&](std::size_t i) { return layout.ranges[i].last > layout.ranges[i].first; };
@@ -129,11 +98,9 @@ void find_visibility(const DeepLayout& layout, std::span<const double> opacity, 
   std::fill(visibility.begin(), visibility.end(), 0.0);
   std::size_t next = 0;  // sample
   for (std::size_t j = 0; j <= intervals && transmittance > 0; ++j) {
-    if (next < samples && layout.ranges[next].first == j && !is_volume(next)) {
-      const std::size_t end = end_of_points(layout, next);
-      see_points(opacity, visibility, next, end, transmittance);
-      next = end;
-    }
+    for (; next < samples && layout.ranges[next].first == j && !is_volume(next); ++next)
+      see_point(opacity, visibility, next, transmittance);
+    if (!(transmittance > 0)) break;
     const std::size_t begin = next;
     while (next < samples && layout.ranges[next].first == j) ++next;
     if (j == intervals) break;

@@ -33,8 +33,9 @@ struct VisibilityScratch {
 /// The flattened color is the sum of visibility times color, and transmittance changes across the sample by visibility
 /// times opacity. Those sums are what is left when every volume is split where another begins or ends, coincident
 /// pieces are merged as the limit of interleaved slices, and the pieces composited front to back ("Interpreting OpenEXR
-/// Deep Pixels"); without forming the pieces, n samples cost n log n whatever overlaps. An opaque sample hides what it
-/// coincides with; several share alike. `opacity[i]` 0..1 is that of one channel; `visibility` gets as many entries.
+/// Deep Pixels"); without forming the pieces, n samples cost n log n whatever overlaps. An opaque volume hides those
+/// that it coincides with; several share alike. `opacity[i]` 0..1 is that of one channel; `visibility` gets as many
+/// entries.
 void find_visibility(const DeepLayout& layout, std::span<const double> opacity, std::span<double> visibility,
                      VisibilityScratch& scratch);
 

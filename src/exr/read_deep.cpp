@@ -20,6 +20,7 @@ struct DeepChunk {
   Window window;             ///< its pixels
   std::uint64_t offset = 0;  ///< of its packed counts
   std::uint64_t packed_counts = 0, packed = 0, unpacked = 0;
+  bool plain_counts = false;
 
   std::uint64_t counts() const { return std::uint64_t(window.pixels()) * kCountBytes; }
   /// Memory at work: counts, packed bytes, and the samples inflated, joined, and as floats.
@@ -42,6 +43,12 @@ std::vector<Window> chunk_windows(const Part& part, const Tiling& tiling) {
     for (int x = all.x0; x < all.x1; x += width)
       windows.push_back({x, y, std::min(x + width, all.x1), std::min(y + height, all.y1)});
   return windows;
+}
+
+// Bytes of the counts of a chunk that no edge of the picture cuts.
+std::uint64_t whole_counts(const Part& part, const Tiling& tiling) {
+  if (part.storage == Storage::deep_tiled) return std::uint64_t(tiling.width) * tiling.height * kCountBytes;
+  return std::uint64_t(part.data_window.width()) * std::uint64_t(lines_per_chunk(part.compression)) * kCountBytes;
 }
 
 DeepChunk read_chunk_head(const Container& container, int part, const Window& window, std::uint64_t offset,
@@ -71,7 +78,12 @@ DeepChunk read_chunk_head(const Container& container, int part, const Window& wi
   const auto beyond = [&](std::uint64_t unpacked, std::uint64_t packed) {
     return packed > unpacked || !(double(unpacked) <= limits.inflation * double(packed) + 64);
   };
-  if (beyond(chunk.counts(), chunk.packed_counts) || beyond(chunk.unpacked, chunk.packed))
+  // Counts are stored plain where they have the size of those of a whole chunk, and packed otherwise; at the edges of
+  // the picture that may be more than they need.
+  chunk.plain_counts = chunk.packed_counts == whole_counts(p, tiling);
+  if ((chunk.packed_counts > whole_counts(p, tiling) ||
+       beyond(std::max(chunk.counts(), chunk.packed_counts), chunk.packed_counts)) ||
+      beyond(chunk.unpacked, chunk.packed))
     refuse(container.header, part, window, "the chunk there claims more samples than its bytes can hold");
   if (chunk.unpacked > limits.chunk_bytes || chunk.counts() > limits.chunk_bytes)
     refuse(container.header, part, window,
@@ -90,10 +102,10 @@ struct DeepDecoder {
 
   // `size` bytes from `packed` bytes at `offset`; bytes that do not shrink are stored as they are.
   std::vector<std::uint8_t> unpack(const DeepChunk& chunk, std::uint64_t offset, std::uint64_t packed,
-                                   std::uint64_t size) const {
+                                   std::uint64_t size, bool plain) const {
     std::vector<std::uint8_t> bytes(std::size_t(packed), 0);
     container.file.read(offset, bytes.data(), bytes.size(), "deep chunks");
-    if (packed == size) return bytes;
+    if (plain) return bytes;
     std::vector<std::uint8_t> joined(std::size_t(size), 0);
     const auto join = [&](std::span<const std::uint8_t> planes) {
       if (planes.size() != joined.size()) refuse(container.header, part, chunk.window, "the chunk there is corrupt");
@@ -112,7 +124,9 @@ struct DeepDecoder {
 
   // Samples up to each pixel, line by line: width + 1 entries a line, the first one 0.
   std::vector<std::uint32_t> read_counts(const DeepChunk& chunk) const {
-    const std::vector<std::uint8_t> bytes = unpack(chunk, chunk.offset, chunk.packed_counts, chunk.counts());
+    const std::vector<std::uint8_t> bytes =
+        unpack(chunk, chunk.offset, chunk.plain_counts ? chunk.counts() : chunk.packed_counts, chunk.counts(),
+               chunk.plain_counts);
     const std::size_t width = std::size_t(chunk.window.width()), lines = std::size_t(chunk.window.height());
     std::vector<std::uint32_t> first(lines * (width + 1));
     std::uint64_t samples = 0;
@@ -146,7 +160,7 @@ struct DeepDecoder {
   void decode(const DeepChunk& chunk, int worker, const std::function<void(const DeepLine&, int)>& take) const {
     const std::vector<std::uint32_t> first = read_counts(chunk);
     const std::vector<std::uint8_t> bytes =
-        unpack(chunk, chunk.offset + chunk.packed_counts, chunk.packed, chunk.unpacked);
+        unpack(chunk, chunk.offset + chunk.packed_counts, chunk.packed, chunk.unpacked, chunk.packed == chunk.unpacked);
     const std::byte* at = reinterpret_cast<const std::byte*>(bytes.data());
     const std::size_t entries = std::size_t(chunk.window.width()) + 1;
     DeepLine line;

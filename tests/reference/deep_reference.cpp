@@ -18,7 +18,7 @@ Piece part_of(const Piece& piece, double front, double back) {
   return part;
 }
 
-bool coincide(const Piece& a, const Piece& b) { return a.front == b.front && a.back == b.back; }
+bool coincide(const Piece& a, const Piece& b) { return a.front == b.front && a.back == b.back && a.back > a.front; }
 
 }  // namespace
 
@@ -73,7 +73,8 @@ std::vector<Piece> tidy(std::vector<Piece> pieces) {
       }
     small.push_back(from == piece.front ? piece : part_of(piece, from, piece.back));
   }
-  std::sort(small.begin(), small.end(), [](const Piece& a, const Piece& b) {
+  std::stable_sort(small.begin(), small.end(), [](const Piece& a, const Piece& b) {
+    if (a.front == b.front && a.back == b.back && a.front == a.back) return false;  // points: as they were given
     return std::tie(a.front, a.back, a.alpha, a.color) < std::tie(b.front, b.back, b.alpha, b.color);
   });
   std::vector<Piece> merged;
