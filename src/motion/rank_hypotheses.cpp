@@ -155,17 +155,16 @@ void judge_pairs(ChannelRanking& ranking, const std::vector<RankedHypothesis>& p
     for (const FollowedPlace& place : places)
       if (place.pair == pair) here.push_back(place);
     const VectorHypothesis& first = ranking.ranking.front().hypothesis;
-    if (turned_round(votes_against_rest(first, here, display)).at_least > kBeaten) {
-      ranking.not_following.push_back(pair);
-      continue;
-    }
     const Fit own = fit_of(first, here, display);
     if (own.predicted < kFewestPlaces / 2 || own.agreement >= kAgreement) continue;
     const auto better = [&](const RankedHypothesis& other) {
       return !other.hypothesis.scale_free && fit_of(other.hypothesis, here, display).agreement > kAgreement &&
              votes_between(other.hypothesis, first, here, display).at_least > kBeaten;
     };
-    if (std::any_of(pool.begin(), pool.end(), better)) ranking.contradicting.push_back(pair);
+    if (std::any_of(pool.begin(), pool.end(), better))
+      ranking.contradicting.push_back(pair);
+    else if (turned_round(votes_against_rest(first, here, display)).at_least > kBeaten)
+      ranking.not_following.push_back(pair);
   }
 }
 
@@ -174,8 +173,9 @@ VectorFinding judge(const ChannelRanking& ranking) {
   if (first.fit.predicted < kFewestPlaces) return VectorFinding::nothing;
   const bool beats_rest = ranking.against_rest.at_least > kBeaten;
   const bool agrees = first.fit.agreement >= kAgreement && first.fit.recall >= kRecall;
-  if (!beats_rest || !agrees) return VectorFinding::nothing;
+  if (!agrees) return VectorFinding::nothing;
   if (!ranking.contradicting.empty()) return VectorFinding::contradictory;
+  if (!beats_rest) return VectorFinding::nothing;
   bool rivals = false;
   for (const RankedHypothesis& other : ranking.ranking) {
     if (!other.rival) continue;
