@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "scene_cli.h"
+#include "small_sequence.h"
 
 namespace varve::test {
 namespace {
