@@ -186,6 +186,9 @@ std::string channels_json(const VectorLayerReport& layer, const VectorReport& re
                       {"given", report.given ? hypothesis_json(*report.given) : "null"},
                       {"ids", votes_json(report.ids)},
                       {"depths", votes_json(report.depths)},
+                      {"by_names", named ? json_quote(named->convention) : "null"},
+                      {"same_here", json_boolean(same_here(ranking))},
+                      {"joined", json_boolean(ranking.joined)},
                       {"open", json_array(left_open(ranking), text)},
                       {"findings", json_array(report.findings, text)}});
 }

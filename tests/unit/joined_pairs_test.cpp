@@ -71,7 +71,7 @@ TEST(JoinedPairs, SteadyMotionAndOtherChannelsTellNothing) {
   // One pair of frames that says otherwise is enough for silence.
   places = shot(0.03, 1);
   for (FollowedPlace& p : places)
-    if (p.pair == 2) p.here = {-p.there[2], -p.there[3], -p.there[0] + 0.1f, -p.there[1]};
+    if (p.pair == 2) p.here = {-p.there[2] + 0.1f, -p.there[3], -p.there[0], -p.there[1]};
   EXPECT_FALSE(join_pairs(places, {0, 1}, {2, 3}, 0).tells);
 }
 
