@@ -8,6 +8,13 @@
 namespace varve {
 namespace {
 
+/// What the report needs.
+MotionRepair counts_of(const MotionRepair& said) {
+  MotionRepair counts;
+  counts.census = said.census, counts.count = said.count;
+  return counts;
+}
+
 /// Puts the motion of this side into the presents, and passes each to `step(k, present, state)`.
 template <class Step>
 void pass_subjects(SideRun& run, SourceFrame& source, const SharedVectors& vectors, const Parameters& parameters,
@@ -19,7 +26,10 @@ void pass_subjects(SideRun& run, SourceFrame& source, const SharedVectors& vecto
     const SideVectors* neighbor = run.neighbor ? &(*run.neighbor)[k] : nullptr;
     MotionRepair said;
     DilatedMotion dilated = motion_to(run.side, (*vectors)[k], neighbor, parameters, said, workers);
-    if (run.side == Side::past) source.repairs[k] = std::move(said);
+    if (run.side == Side::past)
+      source.repairs[k] = std::move(said);
+    else
+      source.forward_repairs.push_back(counts_of(said));
     present.motion = std::move(dilated.motion);
     present.depth = std::move(dilated.depth);
     present.id = std::move(dilated.marks.id);

@@ -24,6 +24,8 @@ struct SourceFrame {
   DeepCounts deep;                    ///< samples of deep parts that were flattened
   std::vector<MotionRepair> repairs;  ///< of the vectors to the frame before, one for each present where they were
                                       ///< tested; filled by the accumulators
+  std::vector<MotionRepair> forward_repairs;  ///< likewise of those to the frame after, where they are followed;
+                                              ///< counts only
 };
 
 /// Names the frame in what a stage has to say: file names alone need not tell it.

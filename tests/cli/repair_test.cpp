@@ -2,7 +2,10 @@
 // they are right.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "base/json.h"
+#include "paths.h"
 #include "scene_cli.h"
 
 namespace varve::test {
@@ -53,6 +56,30 @@ TEST_F(RepairCli, RightVectorsAreNotAccused) {
   for (const std::string scene : {"quality-all", "shadow", "crossing", "stochastic-alpha", "fence", "teleport"}) {
     synth(scene, "8-10", {"--size", "160x90"});
     for (const std::string& sentence : sentences(table(scene, "8-10"))) ADD_FAILURE() << scene << ": " << sentence;
+  }
+}
+
+TEST_F(RepairCli, VectorsOfARealShotAreNotAccused) {
+  const std::string shot = VARVE_DATA "/courtyard/jit/";
+  if (!std::filesystem::exists(shot)) GTEST_SKIP() << "no development data";
+  const Outcome outcome = run_varve(
+      {"probe", shot + "frame.####.exr", "--jitter", shot + "jitter.csv", "--vectors", "15", "--json"}, folder.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::optional<JsonValue> json = parse_json(outcome.out);
+  ASSERT_TRUE(json && json->find("vectors"));
+  for (const std::string& sentence : sentences(*json->find("vectors"))) ADD_FAILURE() << sentence;
+}
+
+TEST_F(RepairCli, RightVectorsResolveToTheSamePicture) {
+  synth("quality-all", "6-10", {"--size", "160x90"});
+  for (const std::string preset : {"salvi", "standard"}) {
+    ASSERT_EQ(resolve_into("in/quality-all.####.exr", preset + "off", {"--preset", preset}, {}).code, 0);
+    const Outcome on = resolve_into("in/quality-all.####.exr", preset + "on", {"--preset", preset},
+                                    {"--repair-motion", "on", "--report", preset + ".json"});
+    ASSERT_EQ(on.code, 0) << on.err;
+    EXPECT_EQ(on.err.find("of the vectors wrong"), std::string::npos) << on.err;
+    EXPECT_EQ(run_varve({"compare", preset + "off/o.####.exr", preset + "on/o.####.exr"}, folder.path()).code, 0)
+        << preset;
   }
 }
 
