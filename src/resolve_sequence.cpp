@@ -157,8 +157,8 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
         read_source_frame(source_options, schedule[index].frame, neighbors_of(schedule, index), workers);
     for (std::size_t k = 0; recursive && k < source.presents.size(); ++k) {
       if (schedule[index].restart) states[k].forward = {};
-      source.repairs.push_back(
-          follow_motion(source.presents[k], job.parameters.motion, job.parameters.repair, states[k].forward, workers));
+      source.repairs.push_back(follow_motion(source.presents[k], cameras_of(source, k), job.parameters.motion,
+                                             job.parameters.repair, states[k].forward, workers));
     }
     return source;
   };

@@ -38,6 +38,10 @@ auto in_frame(int frame, Work work) {
   }
 }
 
+/// The cameras of one of source.presents: those of its subject, or of the first of several that were combined; none
+/// where they are not used.
+CamerasAround cameras_of(const SourceFrame& source, std::size_t present);
+
 /// What every frame of a job is read by.
 struct SourceOptions {
   const ResolveJob& job;

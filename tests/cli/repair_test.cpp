@@ -2,6 +2,8 @@
 // they are right.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 #include "base/json.h"
@@ -109,6 +111,26 @@ TEST_F(RepairCli, EveryAccumulatorRepairsWithTheSameBytesForAnyThreads) {
     EXPECT_EQ(
         run_varve({"compare", accumulator + "off/o.####.exr", accumulator + "check/o.####.exr"}, folder.path()).code, 0)
         << accumulator;
+  }
+}
+
+TEST_F(RepairCli, WhatRestsIsRepairedByTheCamera) {
+  for (const std::string where : {"note", "none"}) {
+    std::filesystem::remove_all(folder / "in");
+    synth("sky-zero", "8-9", {"--size", "160x90", "--cameras", where});
+    for (const std::string accumulator : {"recursive", "two-sided", "gather"}) {
+      const std::string name = where + accumulator;
+      const Outcome outcome =
+          resolve_into("in/sky-zero.####.exr", name,
+                       {"--preset", accumulator == "gather" ? "draft" : "salvi", "--accumulator", accumulator},
+                       {"--camera-motion", "missing", "--repair-motion", "on", "--report", name + ".json"});
+      ASSERT_EQ(outcome.code, 0) << outcome.err;
+      const std::string report = bytes_of(folder / (name + ".json")), key = "\"vectors_by_camera\":";
+      double most = 0;
+      for (std::size_t at = 0; (at = report.find(key, at)) != std::string::npos;)
+        most = std::max(most, std::strtod(report.c_str() + (at += key.size()), nullptr));
+      EXPECT_EQ(most > 6000, where == "note") << name << ": " << most;
+    }
   }
 }
 
