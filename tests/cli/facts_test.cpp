@@ -79,19 +79,29 @@ TEST_F(Facts, AQuietSequenceRaisesNoAlarm) {
   }
 }
 
-TEST_F(Facts, TheJitterIsHeldAgainstThePixels) {
-  ASSERT_EQ(run_varve({"synth", "pan", "-o", "in", "--size", "192x108", "-f", "1-9", "-q"}, folder.path()).code, 0);
-  EXPECT_NE(probe("pan", {"--check-jitter", "9"}).find("the stated jitter is what the pixels show"), std::string::npos);
+TEST_F(Facts, TheJitterIsHeldAgainstThePixelsAlongAMove) {
+  // In smaller pictures this scene has too few edges to tell a tenth of a pixel, and is said to have.
+  ASSERT_EQ(run_varve({"synth", "pan", "-o", "in", "--size", "320x180", "-f", "1-7", "-q"}, folder.path()).code, 0);
+  EXPECT_NE(probe("pan", {"--check-jitter", "7"}).find("the stated jitter is what the pixels show"), std::string::npos);
+  fs::remove_all(folder / "in");
+  synth("pan", "1-7");
+  EXPECT_NE(probe("pan", {"--check-jitter", "7"}).find("the pixels do not tell the jitter: only "), std::string::npos);
+}
+
+TEST_F(Facts, TheJitterIsHeldAgainstThePixelsAtRest) {
+  ASSERT_EQ(run_varve({"synth", "still", "-o", "in", "--size", "160x90", "-f", "1-9", "-q"}, folder.path()).code, 0);
+  EXPECT_NE(probe("still", {"--check-jitter", "9"}).find("the stated jitter is what the pixels show"),
+            std::string::npos);
   std::ofstream list(folder / "twice.csv");
   list << "frame,jx,jy\n";
   const double x[] = {0, -0.25, 0.25, -0.375, 0.125, -0.125, 0.375, -0.4375, 0.0625};
   const double y[] = {-0.166667, 0.166667, -0.388889, -0.055556, 0.277778, -0.277778, 0.055556, 0.388889, -0.462963};
   for (int f = 0; f < 9; ++f) list << f + 1 << "," << 2 * x[f] << "," << -2 * y[f] << "\n";
   list.close();
-  const std::string text = probe("pan", {"--check-jitter", "9", "--jitter", "twice.csv"});
+  const std::string text = probe("still", {"--check-jitter", "9", "--jitter", "twice.csv"});
   EXPECT_NE(text.find("the samples moved half as far as stated"), std::string::npos) << text;
   EXPECT_NE(text.find("y is turned round"), std::string::npos) << text;
-  EXPECT_NE(probe("pan", {"--jitter", "pixels"}).find("measured in the pixels"), std::string::npos);
+  EXPECT_NE(probe("still", {"--jitter", "pixels"}).find("measured in the pixels"), std::string::npos);
 }
 
 TEST_F(Facts, AJitterThatCannotBeMeasuredIsRefusedWithTheReason) {
