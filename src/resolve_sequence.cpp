@@ -2,44 +2,22 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <set>
 #include <utility>
 
-#include "base/error.h"
-#include "exr/write_frame.h"
-#include "plan/preset.h"
 #include "stages/accumulate_frame.h"
-#include "stages/check_jitter.h"
 #include "stages/combine_resolved.h"
 #include "stages/follow_motion.h"
 #include "stages/frame_window.h"
-#include "stages/place_samples.h"
 #include "stages/preflight.h"
-#include "stages/previews.h"
 #include "stages/sequence_facts.h"
-#include "stages/settle_layers.h"
+#include "stages/set_up.h"
 #include "stages/settle_vectors.h"
 #include "stages/two_sided_pass.h"
-#include "stages/write_resolved.h"
+#include "stages/write_outputs.h"
 
 namespace varve {
 namespace {
-
-/// Made once, used for every frame.
-struct Setup {
-  const ResolveJob& job;
-  SequenceInfo info;
-  Plan plan;
-  JitterSource jitter;
-  CameraSource cameras;
-  std::string parameters, hash;
-  FrameReach reach;
-  GatherParameters gather;
-  std::vector<const Aov*> aovs;  ///< asked for
-  std::optional<ColorConversion> into_working_space, out_of_working_space;
-  std::optional<DisplayTransform> display;
-};
 
 /// Wall time since it was made or last asked.
 class Stopwatch {
@@ -53,69 +31,12 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-Setup set_up(const SettledLayers& ordered) {
-  const ResolveJob& job = ordered.job;
-  JitterSource jitter = parse_jitter_source(job.jitter);
-  if (jitter.kind == JitterSource::Kind::pixels) {
-    Workers workers(job.threads);
-    jitter = measured_jitter(job, workers);
-  }
-  CameraSource cameras = parse_camera_source(job.camera);
-  SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter, cameras);
-  check_roles(job, info);
-  Plan plan = make_plan(info, job.parameters, job.request, job.threads);
-  if (job.find_cuts)
-    plan.passes.push_back(
-        {"find cuts", true, "before all else, color and vectors of every frame within reach are read once more"});
-  if (!ordered.note.empty()) plan.notes.push_back(ordered.note);
-  Setup s{job,
-          std::move(info),
-          std::move(plan),
-          jitter,
-          std::move(cameras),
-          {},
-          {},
-          reach_of(job),
-          job.parameters.gather,
-          planned_aovs(job.request, job.parameters.accumulator),
-          {},
-          {},
-          {}};
-  s.gather.filter = job.parameters.recursive.sample_filter;
-  s.gather.return_tolerance = job.parameters.two_sided.return_tolerance;
-  s.parameters = describe_parameters(job, s.info);
-  s.hash = hash_of(s.parameters + describe_side_inputs(job));
-  // Around the resolve: from the input's space to scene-linear, and from there to the output's.
-  if (!job.from_space.empty()) s.into_working_space = ColorConversion::between(job.ocio_config, job.from_space, "");
-  const std::string& to = job.to_space.empty() ? job.from_space : job.to_space;
-  if (!to.empty()) s.out_of_working_space = ColorConversion::between(job.ocio_config, "scene_linear", to);
-  if (!job.preview_folder.empty() && (!job.ocio_config.empty() || std::getenv("OCIO")))
-    s.display = DisplayTransform::make(job.ocio_config, "", job.display, job.view);
-  else if (!job.display.empty() || !job.view.empty())
-    throw Failure(
-        ExitCode::usage,
-        "--display and --view choose how --preview shows colors and need an OpenColorIO config; give --preview, and "
-        "a config with --ocio or the environment variable OCIO");
-  return s;
-}
-
 /// A finished frame is worked on again only where a later one needs its history.
 bool is_needed(const std::vector<ScheduledFrame>& schedule, std::size_t index, const FrameReach& reach) {
   bool needed = schedule[index].write && !schedule[index].complete;
   for (std::size_t k = index + 1; reach.back_to_restart && !needed && k < schedule.size() && !schedule[k].restart; ++k)
     needed = schedule[k].write && !schedule[k].complete;
   return needed;
-}
-
-/// The file's pixels as stored, for what stands beside the color when it is written.
-FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& workers) {
-  if (!s.job.request.keep_channels) return FileSet(headers.files.size());
-  DeepFrame told;  // when the frame was read for the resolve
-  return in_frame(headers.frame, [&] {
-    FileSet pixels = read_files(headers, {.whole_parts = true, .rule = s.job.roles.combine_layers.rule}, told, workers);
-    divide_passed_vectors(headers, pixels.front(), workers);
-    return pixels;
-  });
 }
 
 /// Cuts in the pixels, and what else is worth a word, before any frame meets another.
@@ -185,39 +106,6 @@ void tell_of_cameras(const SourceFrame& source, std::set<std::string>& told, con
   const std::string& remark = source.by_camera.remark;
   if (remark.empty() || !events.warning || !told.insert(remark.substr(0, remark.find('('))).second) return;
   events.warning("frame " + std::to_string(source.headers.frame) + ": " + remark);
-}
-
-WriteOptions write_options(const Setup& s, const std::string& frames_used) {
-  return {s.job.zip_level,
-          {{"varve:version", version()},
-           {"varve:parameters", s.parameters},
-           {"varve:hash", s.hash},
-           {"varve:frames", frames_used}}};
-}
-
-void write_outputs(const Setup& s, const FrameHeaders& headers, const FileSet& pixels,
-                   const std::vector<ResolvedSubject>& resolved, const std::string& frames_used, FrameReport& report,
-                   Workers& workers) {
-  const FileHeader &source = headers.files.front(), &stored = files_on_disk(headers).front();
-  const WriteOptions options = write_options(s, frames_used);
-  const std::vector<const Aov*> none;
-  const bool apart = s.job.diagnostics.has_value();
-  FileOutput color =
-      resolved_parts(source, pixels.front(), resolved, apart ? none : s.aovs, s.job.request.keep_channels,
-                     headers.passed_on, s.out_of_working_space ? &*s.out_of_working_space : nullptr, workers);
-  for (OutputPart& part : color.parts)
-    if (!part.copy_chunks) part.compression = s.job.compression;
-  report.half_overflows = color.half_overflows;
-  place_samples(headers, color.parts);
-  if (apart) {
-    FileOutput diagnostics = diagnostic_parts(source, resolved, s.aovs, workers);
-    place_samples(headers, diagnostics.parts);
-    write_frame(s.job.diagnostics->path(headers.frame), stored, diagnostics.parts, options, workers);
-  }
-  if (!s.job.preview_folder.empty())
-    write_previews(s.job.preview_folder, headers.frame, resolved, s.aovs, s.display ? &*s.display : nullptr, workers);
-  // The resolved frame goes last: once it is there, everything that belongs to it is.
-  write_frame(report.path, stored, color.parts, options, workers);
 }
 
 }  // namespace
@@ -330,7 +218,8 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
       const FileSet beside = source.pixels.empty() ? read_beside(s, source.headers, workers) : FileSet();
       const FileSet& pixels = source.pixels.empty() ? beside : source.pixels;
       in_frame(scheduled.frame, [&] {
-        write_outputs(s, source.headers, pixels, written.colors, frames_used(schedule, i, s.reach), report, workers);
+        report.half_overflows = write_outputs(s, report.path, source.headers, pixels, written.colors,
+                                              frames_used(schedule, i, s.reach), workers);
       });
       report.write_seconds = clock.lap();
       report.written = true;

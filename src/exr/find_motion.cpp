@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/words.h"
 #include "exr/channel_index.h"
 
 namespace varve {
@@ -13,16 +14,6 @@ namespace {
 
 constexpr std::string_view kRemedy =
     "give --convention NAME (see varve help conventions), or --convention none to resolve without vectors";
-
-std::vector<std::string_view> split_at_commas(std::string_view text) {
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t comma = text.find(',');
-    fields.push_back(text.substr(0, comma));
-    if (comma == std::string_view::npos) return fields;
-    text.remove_prefix(comma + 1);
-  }
-}
 
 bool ends_with(const std::vector<std::string>& path, const std::vector<std::string>& tail) {
   return path.size() >= tail.size() &&

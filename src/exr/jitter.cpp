@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
+#include "base/words.h"
 
 namespace varve {
 namespace {
@@ -22,23 +23,6 @@ constexpr std::uintmax_t kMaxSidecarBytes = std::uintmax_t(64) << 20;  // a mill
 // A sample one whole pixel away cannot belong to the pixel, so more than that is another unit or another thing.
 // Written so that NaN fails.
 bool within_a_pixel(const Jitter& jitter) { return std::abs(jitter.x) <= 1 && std::abs(jitter.y) <= 1; }
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::vector<std::string_view> split_at_commas(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    fields.push_back(trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
 
 template <class Number>
 std::optional<Number> whole_number(std::string_view text) {
@@ -164,10 +148,11 @@ JitterSource parse_jitter_source(const std::string& text) {
   std::error_code ignored;
   const bool looks_like_file = text.find_first_of("./") != std::string::npos || std::filesystem::exists(text, ignored);
   if (!looks_like_file)
-    throw Failure(ExitCode::usage,
-                  "--jitter " + text +
-                      ": unknown; it takes auto, none, pixels, a CSV file, or a pattern such as halton23:16 (see varve help "
-                      "patterns)");
+    throw Failure(
+        ExitCode::usage,
+        "--jitter " + text +
+            ": unknown; it takes auto, none, pixels, a CSV file, or a pattern such as halton23:16 (see varve help "
+            "patterns)");
   return read_sidecar(text);
 }
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/words.h"
+
 namespace varve {
 namespace {
-
-constexpr std::size_t kColumns = 100;
 
 /// Lines of columns that take the width of their widest entry; the last column is wrapped.
 class Table {
@@ -26,28 +26,9 @@ class Table {
     for (const std::vector<std::string>& row : rows_) {
       std::string line(indent_, ' ');
       for (std::size_t i = 0; i + 1 < row.size(); ++i) line += row[i] + std::string(widths[i] - row[i].size() + 2, ' ');
-      if (!row.empty()) append_wrapped(text, line, row.back());
+      if (!row.empty()) text += wrapped(line, row.back());
     }
     return text;
-  }
-
-  // `words` behind `line`, broken at blanks; further lines begin below the first word.
-  static void append_wrapped(std::string& text, std::string line, const std::string& words) {
-    const std::string blank(line.size(), ' ');
-    bool first = true;
-    for (std::size_t at = 0; at < words.size();) {
-      const std::size_t end = std::min(words.find(' ', at), words.size());
-      if (!first && line.size() + 1 + (end - at) > kColumns) {
-        text += line + '\n';
-        line = blank;
-        first = true;
-      }
-      line.append(first ? "" : " ").append(words, at, end - at);
-      first = false;
-      at = end + 1;
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + '\n';
   }
 
  private:
@@ -97,8 +78,8 @@ std::string files_text(const SequenceInfo& info, const Plan& plan) {
       const std::string title = std::string(name_of(part.storage)) + ", " + name_of(part.compression) + ", data " +
                                 window_text(part.data_window) + ", display " + window_text(part.display_window) +
                                 (part.view.empty() ? "" : ", view " + part.view);
-      Table::append_wrapped(
-          text, "  part " + std::to_string(p) + (part.name.empty() ? "" : " \"" + part.name + "\"") + ": ", title);
+      text +=
+          wrapped("  part " + std::to_string(p) + (part.name.empty() ? "" : " \"" + part.name + "\"") + ": ", title);
       Table table(4);
       for (int c = 0; c < int(part.channels.size()); ++c) {
         const Channel& channel = part.channels[std::size_t(c)];
@@ -152,7 +133,7 @@ std::string statistics_text(const SequenceInfo& info, const std::vector<ChannelS
 std::string list_text(const std::string& title, const std::vector<std::string>& sentences) {
   if (sentences.empty()) return "";
   std::string text = "\n" + title + "\n";
-  for (const std::string& sentence : sentences) Table::append_wrapped(text, "  - ", sentence);
+  for (const std::string& sentence : sentences) text += wrapped("  - ", sentence);
   return text;
 }
 

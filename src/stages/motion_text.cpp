@@ -5,13 +5,12 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "base/json.h"
+#include "base/words.h"
 #include "stages/probe_motion.h"
 
 namespace varve {
 namespace {
 
-constexpr std::size_t kColumns = 100;
 constexpr std::size_t kListed = 6;  // hypotheses of a ranking that people see
 
 std::string number(double value, const char* format = "%.4g") {
@@ -21,24 +20,6 @@ std::string number(double value, const char* format = "%.4g") {
 }
 
 std::string percent(double share) { return number(100 * share, "%.0f") + " %"; }
-
-std::string wrapped(const std::string& indent, const std::string& words) {
-  std::string text, line = indent;
-  const std::string blank(indent.size(), ' ');
-  bool first = true;
-  for (std::size_t at = 0; at < words.size();) {
-    const std::size_t end = std::min(words.find(' ', at), words.size());
-    if (!first && line.size() + 1 + (end - at) > kColumns) {
-      text += line + '\n';
-      line = blank;
-      first = true;
-    }
-    line.append(first ? "" : " ").append(words, at, end - at);
-    first = false;
-    at = end + 1;
-  }
-  return text + line + '\n';
-}
 
 std::string joined(const std::vector<std::string>& words, const char* between) {
   std::string text;
@@ -152,75 +133,58 @@ std::string channels_text(const VectorLayerReport& layer, const VectorReport& re
   return text;
 }
 
-using Members = std::initializer_list<std::pair<const char*, std::string>>;
-
-std::string object(Members members) {
-  std::string text = "{";
-  for (const auto& [name, value] : members)
-    text.append(text.size() > 1 ? "," : "").append(json_quote(name)).append(":").append(value);
-  return text + "}";
-}
-
-template <class Range, class ToJson>
-std::string array(const Range& range, ToJson to_json) {
-  std::string text = "[";
-  for (const auto& item : range) text.append(text.size() > 1 ? "," : "").append(to_json(item));
-  return text + "]";
-}
-
-std::string boolean(bool value) { return value ? "true" : "false"; }
 std::string residual_json(double residual) { return residual < 0 ? "null" : json_number(residual); }
 
 std::string hypothesis_json(const RankedHypothesis& ranked) {
   const MotionEncoding& e = ranked.hypothesis.encoding;
   const char* unit = e.unit == MotionUnit::pixel ? "pixel" : e.unit == MotionUnit::unit ? "unit" : "ndc";
-  return object({{"text", json_quote(words_of(ranked.hypothesis))},
-                 {"x", std::to_string(ranked.hypothesis.x)},
-                 {"y", std::to_string(ranked.hypothesis.y)},
-                 {"direction", e.direction == MotionDirection::previous ? "\"previous\"" : "\"next\""},
-                 {"unit", json_quote(unit)},
-                 {"bias", json_number(e.bias)},
-                 {"scale", json_number(e.scale / e.shutter)},
-                 {"scale_measured", boolean(ranked.hypothesis.scale_free)},
-                 {"scale_deviation", json_number(ranked.scale.deviation)},
-                 {"scale_x", json_number(ranked.scale.scale_x)},
-                 {"scale_y", json_number(ranked.scale.scale_y)},
-                 {"sign_x", json_number(e.sign_x)},
-                 {"sign_y", json_number(e.sign_y)},
-                 {"jitter", std::to_string(ranked.hypothesis.jitter)},
-                 {"score", json_number(ranked.fit.score)},
-                 {"agreement", json_number(ranked.fit.agreement)},
-                 {"off", json_number(ranked.fit.off)},
-                 {"residual", residual_json(ranked.residual)},
-                 {"rival", boolean(ranked.rival)},
-                 {"decided", std::to_string(ranked.first_against.decided)},
-                 {"won", std::to_string(ranked.first_against.won)},
-                 {"conventions",
-                  array(rows_of(ranked.hypothesis.encoding), [](const std::string& row) { return json_quote(row); })}});
+  return json_object({{"text", json_quote(words_of(ranked.hypothesis))},
+                      {"x", std::to_string(ranked.hypothesis.x)},
+                      {"y", std::to_string(ranked.hypothesis.y)},
+                      {"direction", e.direction == MotionDirection::previous ? "\"previous\"" : "\"next\""},
+                      {"unit", json_quote(unit)},
+                      {"bias", json_number(e.bias)},
+                      {"scale", json_number(e.scale / e.shutter)},
+                      {"scale_measured", json_boolean(ranked.hypothesis.scale_free)},
+                      {"scale_deviation", json_number(ranked.scale.deviation)},
+                      {"scale_x", json_number(ranked.scale.scale_x)},
+                      {"scale_y", json_number(ranked.scale.scale_y)},
+                      {"sign_x", json_number(e.sign_x)},
+                      {"sign_y", json_number(e.sign_y)},
+                      {"jitter", std::to_string(ranked.hypothesis.jitter)},
+                      {"score", json_number(ranked.fit.score)},
+                      {"agreement", json_number(ranked.fit.agreement)},
+                      {"off", json_number(ranked.fit.off)},
+                      {"residual", residual_json(ranked.residual)},
+                      {"rival", json_boolean(ranked.rival)},
+                      {"decided", std::to_string(ranked.first_against.decided)},
+                      {"won", std::to_string(ranked.first_against.won)},
+                      {"conventions", json_array(rows_of(ranked.hypothesis.encoding),
+                                                 [](const std::string& row) { return json_quote(row); })}});
 }
 
 std::string votes_json(const MarkVotes& votes) {
-  return object({{"decided", std::to_string(votes.decided)}, {"won", std::to_string(votes.won)}});
+  return json_object({{"decided", std::to_string(votes.decided)}, {"won", std::to_string(votes.won)}});
 }
 
 std::string channels_json(const VectorLayerReport& layer, const VectorReport& report, const Window& display) {
   const ChannelRanking& ranking = report.ranking;
   const auto text = [](const std::string& s) { return json_quote(s); };
-  return object({{"x", json_quote(layer.layer.names[std::size_t(ranking.x)])},
-                 {"y", json_quote(layer.layer.names[std::size_t(ranking.y)])},
-                 {"finding", json_quote(name_of(ranking.finding))},
-                 {"verdict", json_quote(verdict_text(layer.layer, report, display))},
-                 {"confidence", json_number(ranking.confidence)},
-                 {"hypotheses", array(ranking.ranking, hypothesis_json)},
-                 {"rest", object({{"agreement", json_number(ranking.rest.agreement)},
-                                  {"off", json_number(ranking.rest.off)},
-                                  {"residual", residual_json(report.rest_residual)}})},
-                 {"floor", residual_json(report.floor_residual)},
-                 {"given", report.given ? hypothesis_json(*report.given) : "null"},
-                 {"ids", votes_json(report.ids)},
-                 {"depths", votes_json(report.depths)},
-                 {"open", array(left_open(ranking), text)},
-                 {"findings", array(report.findings, text)}});
+  return json_object({{"x", json_quote(layer.layer.names[std::size_t(ranking.x)])},
+                      {"y", json_quote(layer.layer.names[std::size_t(ranking.y)])},
+                      {"finding", json_quote(name_of(ranking.finding))},
+                      {"verdict", json_quote(verdict_text(layer.layer, report, display))},
+                      {"confidence", json_number(ranking.confidence)},
+                      {"hypotheses", json_array(ranking.ranking, hypothesis_json)},
+                      {"rest", json_object({{"agreement", json_number(ranking.rest.agreement)},
+                                            {"off", json_number(ranking.rest.off)},
+                                            {"residual", residual_json(report.rest_residual)}})},
+                      {"floor", residual_json(report.floor_residual)},
+                      {"given", report.given ? hypothesis_json(*report.given) : "null"},
+                      {"ids", votes_json(report.ids)},
+                      {"depths", votes_json(report.depths)},
+                      {"open", json_array(left_open(ranking), text)},
+                      {"findings", json_array(report.findings, text)}});
 }
 
 }  // namespace
@@ -283,26 +247,26 @@ std::string motion_text(const MotionReport& report) {
 }
 
 std::string motion_json(const MotionReport& report) {
-  const std::string pairs = array(report.pairs, [](const MotionPair& pair) {
-    return object({{"frame", std::to_string(pair.frame)},
-                   {"earlier", std::to_string(pair.earlier)},
-                   {"textured", std::to_string(pair.textured)},
-                   {"followed", std::to_string(pair.followed)},
-                   {"moving", std::to_string(pair.moving)},
-                   {"jitter_known", boolean(pair.jitter_known)}});
+  const std::string pairs = json_array(report.pairs, [](const MotionPair& pair) {
+    return json_object({{"frame", std::to_string(pair.frame)},
+                        {"earlier", std::to_string(pair.earlier)},
+                        {"textured", std::to_string(pair.textured)},
+                        {"followed", std::to_string(pair.followed)},
+                        {"moving", std::to_string(pair.moving)},
+                        {"jitter_known", json_boolean(pair.jitter_known)}});
   });
-  const std::string layers = array(report.layers, [&](const VectorLayerReport& layer) {
-    return object({{"layer", json_quote(layer.subject)},
-                   {"view", json_quote(layer.view)},
-                   {"vectors", json_quote(layer.layer.name)},
-                   {"by_name", boolean(layer.layer.by_name)},
-                   {"channels", array(layer.channels, [&](const VectorReport& channels) {
-                      return channels_json(layer, channels, report.display);
-                    })}});
+  const std::string layers = json_array(report.layers, [&](const VectorLayerReport& layer) {
+    return json_object({{"layer", json_quote(layer.subject)},
+                        {"view", json_quote(layer.view)},
+                        {"vectors", json_quote(layer.layer.name)},
+                        {"by_name", json_boolean(layer.layer.by_name)},
+                        {"channels", json_array(layer.channels, [&](const VectorReport& channels) {
+                           return channels_json(layer, channels, report.display);
+                         })}});
   });
-  return object({{"pairs", pairs}, {"layers", layers}, {"notes", array(report.notes, [](const std::string& note) {
-                                                          return json_quote(note);
-                                                        })}});
+  return json_object({{"pairs", pairs},
+                      {"layers", layers},
+                      {"notes", json_array(report.notes, [](const std::string& note) { return json_quote(note); })}});
 }
 
 }  // namespace varve

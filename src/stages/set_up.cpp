@@ -1,0 +1,57 @@
+#include "stages/set_up.h"
+
+#include <cstdlib>
+#include <utility>
+
+#include "base/error.h"
+#include "stages/check_jitter.h"
+
+namespace varve {
+
+Setup set_up(const SettledLayers& ordered) {
+  const ResolveJob& job = ordered.job;
+  JitterSource jitter = parse_jitter_source(job.jitter);
+  if (jitter.kind == JitterSource::Kind::pixels) {
+    Workers workers(job.threads);
+    jitter = measured_jitter(job, workers);
+  }
+  CameraSource cameras = parse_camera_source(job.camera);
+  SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter, cameras);
+  check_roles(job, info);
+  Plan plan = make_plan(info, job.parameters, job.request, job.threads);
+  if (job.find_cuts)
+    plan.passes.push_back(
+        {"find cuts", true, "before all else, color and vectors of every frame within reach are read once more"});
+  if (!ordered.note.empty()) plan.notes.push_back(ordered.note);
+  Setup s{job,
+          std::move(info),
+          std::move(plan),
+          jitter,
+          std::move(cameras),
+          {},
+          {},
+          reach_of(job),
+          job.parameters.gather,
+          planned_aovs(job.request, job.parameters.accumulator),
+          {},
+          {},
+          {}};
+  s.gather.filter = job.parameters.recursive.sample_filter;
+  s.gather.return_tolerance = job.parameters.two_sided.return_tolerance;
+  s.parameters = describe_parameters(job, s.info);
+  s.hash = hash_of(s.parameters + describe_side_inputs(job));
+  // Around the resolve: from the input's space to scene-linear, and from there to the output's.
+  if (!job.from_space.empty()) s.into_working_space = ColorConversion::between(job.ocio_config, job.from_space, "");
+  const std::string& to = job.to_space.empty() ? job.from_space : job.to_space;
+  if (!to.empty()) s.out_of_working_space = ColorConversion::between(job.ocio_config, "scene_linear", to);
+  if (!job.preview_folder.empty() && (!job.ocio_config.empty() || std::getenv("OCIO")))
+    s.display = DisplayTransform::make(job.ocio_config, "", job.display, job.view);
+  else if (!job.display.empty() || !job.view.empty())
+    throw Failure(
+        ExitCode::usage,
+        "--display and --view choose how --preview shows colors and need an OpenColorIO config; give --preview, and "
+        "a config with --ocio or the environment variable OCIO");
+  return s;
+}
+
+}  // namespace varve
