@@ -77,13 +77,18 @@ PlannedPass camera_pass(const SequenceInfo& info, const Parameters& parameters, 
   }
   const bool background = motion.camera == CameraUse::background || motion.camera == CameraUse::all;
   const bool zoom = motion.camera == CameraUse::zoom || motion.camera == CameraUse::all;
+  // Dilation tells surfaces from background by it.
+  const bool apart =
+      completes && background && motion.dilation == Dilation::longest && parameters.accumulator != Accumulator::gather;
+  plan.use_depth = plan.use_depth || apart;
   std::string what;
   const auto add = [&](bool used, const std::string& text) {
     if (used) what += (what.empty() ? "" : "; ") + text;
   };
   add(made > 0, "vectors are made from depth");
   add(completes && background, std::string("background whose vectors are zero moves with the camera, which ") +
-                                   (moves.turns ? "turns" : "does not turn in these frames"));
+                                   (moves.turns ? "turns" : "does not turn in these frames") +
+                                   (apart ? "; where both meet, pixels follow the surface" : ""));
   add(completes && zoom,
       std::string("zoom and lens shift are added where the vectors of what rests are found to lack them") +
           (moves.zooms ? "" : "; the focal length does not change in these frames"));

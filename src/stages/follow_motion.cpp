@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "motion/dilate.h"
+
 namespace varve {
 
 MotionRepair follow_motion(Present& present, const MotionParameters& parameters, const RepairParameters& repair,
@@ -22,8 +24,9 @@ MotionRepair follow_motion(Present& present, const MotionParameters& parameters,
     said = repair_motion(motion, seen.view(), memory.seen.view(), {}, {}, repair, workers);
   }
   memory.seen = std::move(seen);
-  DilatedMotion followed = dilate_motion(std::move(motion), present.depth, parameters.dilation, workers,
-                                         {std::move(present.id), std::move(present.normal)});
+  const auto dilate = moves_background(parameters.camera) ? dilate_surfaces_apart : dilate_motion;
+  DilatedMotion followed = dilate(std::move(motion), present.depth, parameters.dilation, workers,
+                                  {std::move(present.id), std::move(present.normal)});
   present.motion = std::move(followed.motion);
   present.depth = std::move(followed.depth);
   present.id = std::move(followed.marks.id);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/reject.h"
+#include "motion/dilate.h"
 
 namespace varve {
 namespace {
@@ -79,7 +80,8 @@ DilatedMotion motion_to(Side side, const SideVectors& here, const SideVectors* n
     reject_one_way_motion(motion, back, tolerance, workers);
     if (!repaired.empty()) keep_repaired(motion, repaired, said, workers);
   }
-  return dilate_motion(std::move(motion), here.depth, parameters.motion.dilation, workers, std::move(marks));
+  const auto dilate = moves_background(parameters.motion.camera) ? dilate_surfaces_apart : dilate_motion;
+  return dilate(std::move(motion), here.depth, parameters.motion.dilation, workers, std::move(marks));
 }
 
 std::vector<StrictSide> pass_frame(SideRun& run, SourceFrame& source, const SharedVectors& vectors,

@@ -243,15 +243,26 @@ Pixel predict_pixel(const Present& present, const History& previous, const Recur
   return out;
 }
 
-glm::vec2 dilated_motion(const Plane<glm::vec2>& motion, const Plane<float>& depth, Dilation dilation, int x, int y) {
+glm::vec2 dilated_motion(const Plane<glm::vec2>& motion, const Plane<float>& depth, Dilation dilation, int x, int y,
+                         bool surfaces_apart) {
+  bool surface_near = false;
+  for (int j = y - 1; surfaces_apart && j <= y + 1; ++j)
+    for (int i = x - 1; i <= x + 1; ++i)
+      if (motion.window().contains(i, j) && std::isfinite(motion.at(i, j).x) && std::isfinite(depth.at(i, j)))
+        surface_near = true;
+  const auto counts = [&](int i, int j) {
+    if (!motion.window().contains(i, j) || !std::isfinite(motion.at(i, j).x)) return false;
+    if (!surfaces_apart) return true;
+    return std::isfinite(depth.at(i, j)) || (!surface_near && !std::isfinite(depth.at(x, y)));
+  };
   glm::vec2 best = motion.at(x, y);
   if (dilation == Dilation::none || (dilation == Dilation::nearest && depth.empty())) return best;
-  bool found = std::isfinite(best.x);
+  bool found = counts(x, y);
   double best_length = found ? std::hypot(double(best.x), double(best.y)) : 0;
   double best_depth = found && dilation == Dilation::nearest ? double(depth.at(x, y)) : 0;
   for (int j = y - 1; j <= y + 1; ++j)
     for (int i = x - 1; i <= x + 1; ++i) {
-      if (!motion.window().contains(i, j) || !std::isfinite(motion.at(i, j).x)) continue;
+      if (!counts(i, j)) continue;
       const glm::vec2 v = motion.at(i, j);
       const double length = std::hypot(double(v.x), double(v.y));
       const double z = dilation == Dilation::nearest ? double(depth.at(i, j)) : 0;

@@ -36,7 +36,8 @@ Color weighed_present(const Present& present, SampleFilter filter, std::optional
 Pixel predict_pixel(const Present& present, const History& previous, const RecursiveParameters& recursive,
                     const RectifyParameters& rectify, int x, int y);
 
-/// The vector a pixel follows, by looking at all nine.
-glm::vec2 dilated_motion(const Plane<glm::vec2>& motion, const Plane<float>& depth, Dilation dilation, int x, int y);
+/// The vector a pixel follows, by looking at all nine; with `surfaces_apart` surfaces come before background.
+glm::vec2 dilated_motion(const Plane<glm::vec2>& motion, const Plane<float>& depth, Dilation dilation, int x, int y,
+                         bool surfaces_apart = false);
 
 }  // namespace varve::reference

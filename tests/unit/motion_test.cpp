@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "motion/dilate.h"
 #include "reference/accumulate_reference.h"
 #include "support/scenes.h"
 
@@ -82,6 +83,42 @@ TEST(Motion, DilationAgreesWithItsSlowTwin) {
           ASSERT_TRUE(slow == fast || (std::isnan(slow.x) && std::isnan(fast.x))) << x << "," << y;
         }
     }
+}
+
+TEST(Motion, DilationThatKeepsSurfacesApartAgreesWithItsSlowTwin) {
+  Workers workers(2);
+  for (const Window w : {Window{0, 0, 31, 17}, Window{-5, 3, -4, 20}, Window{0, 0, 2, 1}})
+    for (const Dilation dilation : {Dilation::none, Dilation::nearest, Dilation::longest}) {
+      Present p = test::noise_present(w, {4, 0, 5, 0.2, true, 1}, workers);
+      for (int y = w.y0; y < w.y1; ++y)
+        for (int x = w.x0; x < w.x1; ++x)
+          if ((x * 7 + y * 3) % 5 < 2) p.depth.at(x, y) = kInf;
+      const DilatedMotion d = dilate_surfaces_apart(p.motion.clone(), p.depth, dilation, workers);
+      const bool apart = dilation == Dilation::longest;
+      for (int y = w.y0; y < w.y1; ++y)
+        for (int x = w.x0; x < w.x1; ++x) {
+          const glm::vec2 slow = reference::dilated_motion(p.motion, p.depth, dilation, x, y, apart);
+          const glm::vec2 fast = d.motion.at(x, y);
+          ASSERT_TRUE(slow == fast || (std::isnan(slow.x) && std::isnan(fast.x))) << x << "," << y;
+        }
+    }
+}
+
+TEST(Motion, AThingAtRestDoesNotFollowTheSkyThatACameraMoves) {
+  Workers workers(1);
+  const Window w{0, 0, 5, 1};
+  Plane<glm::vec2> motion(w, 0, glm::vec2(9, 0));
+  Plane<float> depth(w, 0, kInf);
+  motion.at(1, 0) = glm::vec2(1, 0), depth.at(1, 0) = 5;
+  motion.at(2, 0) = glm::vec2(0, 2), depth.at(2, 0) = 4;
+  const DilatedMotion d = dilate_surfaces_apart(motion.clone(), depth, Dilation::longest, workers);
+  EXPECT_EQ(d.motion.at(0, 0), glm::vec2(1, 0));
+  EXPECT_EQ(d.motion.at(1, 0), glm::vec2(0, 2));
+  EXPECT_EQ(d.depth.at(1, 0), 4.0f);
+  EXPECT_EQ(d.motion.at(2, 0), glm::vec2(0, 2));
+  EXPECT_EQ(d.motion.at(3, 0), glm::vec2(0, 2));
+  EXPECT_EQ(d.motion.at(4, 0), glm::vec2(9, 0));
+  EXPECT_EQ(dilate_motion(motion.clone(), depth, Dilation::longest, workers).motion.at(1, 0), glm::vec2(9, 0));
 }
 
 TEST(Motion, DilationTakesTheDepthOfTheChosenPixel) {
