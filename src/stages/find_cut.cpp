@@ -33,8 +33,9 @@ constexpr double kLostOfAll = 0.5;
 constexpr int kFewBlocks = 20;
 constexpr double kDistanceOfFew = 0.15;
 
-// Blocks whose light changed by the same factor, up to this one, changed alike.
-constexpr double kAgree = 1.1;
+// Blocks whose light changed by the same factor, up to this one, changed alike. Means of few samples are not surer than
+// the second, which will do for steps that are far from none: of small ones it made false alarms in pictures of 64x36.
+constexpr double kAgree = 1.1, kAgreeRoughly = 1.3, kLargeStep = 1.45;
 
 /// Means over the valid pixels of the blocks: luma, red and green share; NaN where no pixel is valid.
 struct Blocks {
@@ -291,7 +292,10 @@ ExposureStep exposure_step(const FrameTrace& before, const FrameTrace& now, int 
   std::sort(ratios.begin(), ratios.end());
   ExposureStep step;
   step.ratio = ratios[ratios.size() / 2];
-  const auto agree = [&](double r) { return r > step.ratio / kAgree && r < step.ratio * kAgree; };
+  const double size = std::max(step.ratio, 1 / step.ratio);
+  // A block that is nearer to no step than to this one does not agree.
+  const double within = size > kLargeStep ? std::min(std::sqrt(size), kAgreeRoughly) : kAgree;
+  const auto agree = [&](double r) { return r > step.ratio / within && r < step.ratio * within; };
   step.agreed = double(std::count_if(ratios.begin(), ratios.end(), agree)) / double(compared);
   return step;
 }
