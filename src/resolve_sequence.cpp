@@ -81,10 +81,11 @@ void count(FrameReport& report, const SourceFrame& source, const std::vector<Res
   report.lens_added = source.by_camera.lens;
   report.deep_samples += source.deep.samples;
   report.deep_repaired += source.deep.defects.total();
-  for (const MotionRepair& repair : source.repairs) {
-    report.vectors += repair.census;
-    for (std::size_t how = 0; how < repair.count.size(); ++how) report.vectors_by[how] += repair.count[how];
-  }
+  for (const std::vector<MotionRepair>* repairs : {&source.repairs, &source.forward_repairs})
+    for (const MotionRepair& repair : *repairs) {
+      report.vectors += repair.census;
+      for (std::size_t how = 0; how < repair.count.size(); ++how) report.vectors_by[how] += repair.count[how];
+    }
   for (std::size_t k = 0; k < resolved.size(); ++k) {
     report.pixels += source.presents[k].color.window().pixels();
     report.not_finite += source.presents[k].not_finite;
@@ -156,8 +157,8 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
         read_source_frame(source_options, schedule[index].frame, neighbors_of(schedule, index), workers);
     for (std::size_t k = 0; recursive && k < source.presents.size(); ++k) {
       if (schedule[index].restart) states[k].forward = {};
-      source.repairs.push_back(
-          follow_motion(source.presents[k], job.parameters.motion, job.parameters.repair, states[k].forward, workers));
+      source.repairs.push_back(follow_motion(source.presents[k], cameras_of(source, k), job.parameters.motion,
+                                             job.parameters.repair, states[k].forward, workers));
     }
     return source;
   };

@@ -26,7 +26,7 @@ struct FrameReport {
   std::size_t with_vectors = 0;             ///< pixels of the subjects that have vectors
   std::size_t by_camera = 0;                ///< pixels whose vector is that of a camera
   std::size_t lens_added = 0;               ///< pixels to whose vector zoom or lens shift was added
-  MotionCensus vectors;                     ///< of the vectors that were tested (--repair-motion)
+  MotionCensus vectors;                     ///< of the vectors that were tested (--repair-motion), both directions
   std::array<std::size_t, 5> vectors_by{};  ///< of these, pixels by RepairedBy; under check: what would be done
   std::size_t opacity_held = 0;             ///< pixels of layers whose alpha or transmittance lay beyond 0..1
   std::size_t companions_not_finite = 0;    ///< values of --channels that were NaN or infinite

@@ -197,22 +197,6 @@ std::optional<MatchedPlace> match_place(const TonePyramid& from, const TonePyram
   return MatchedPlace{place, *moved, *difference};
 }
 
-// The smaller eigenvalue of the gradients' moments around a pixel, per pixel: texture in both directions (Shi and
-// Tomasi 1994).
-double texture(const Plane<float>& tone, int x, int y) {
-  double xx = 0, xy = 0, yy = 0;
-  for (int dy = -kPatchRadius + 1; dy < kPatchRadius; ++dy)
-    for (int dx = -kPatchRadius + 1; dx < kPatchRadius; ++dx) {
-      const double gx = double(tone.at(x + dx + 1, y + dy)) - double(tone.at(x + dx - 1, y + dy));
-      const double gy = double(tone.at(x + dx, y + dy + 1)) - double(tone.at(x + dx, y + dy - 1));
-      xx += gx * gx, xy += gx * gy, yy += gy * gy;
-    }
-  const double half = (xx - yy) / 2, n = double(kEdge - 2) * (kEdge - 2);
-  return ((xx + yy) / 2 - std::sqrt(half * half + xy * xy)) / (4 * n);
-}
-
-constexpr double kLeastTexture = 1e-5;  // gradients of 0.003 a pixel in either direction
-
 }  // namespace
 
 std::optional<double> patch_difference(const Plane<float>& from, int x, int y, const Plane<float>& to,
@@ -230,6 +214,18 @@ std::optional<double> patch_difference(const Plane<float>& from, int x, int y, c
   return both > 1e-9 ? std::max(0.0, 1 - 2 * cov / both) : 1.0;
 }
 
+double texture_at(const Plane<float>& tone, int x, int y) {
+  double xx = 0, xy = 0, yy = 0;
+  for (int dy = -kPatchRadius + 1; dy < kPatchRadius; ++dy)
+    for (int dx = -kPatchRadius + 1; dx < kPatchRadius; ++dx) {
+      const double gx = double(tone.at(x + dx + 1, y + dy)) - double(tone.at(x + dx - 1, y + dy));
+      const double gy = double(tone.at(x + dx, y + dy + 1)) - double(tone.at(x + dx, y + dy - 1));
+      xx += gx * gx, xy += gx * gy, yy += gy * gy;
+    }
+  const double half = (xx - yy) / 2, n = double(kEdge - 2) * (kEdge - 2);
+  return ((xx + yy) / 2 - std::sqrt(half * half + xy * xy)) / (4 * n);
+}
+
 std::vector<Place> textured_places(const Plane<float>& tone, int count, Workers& workers) {
   const Window& w = tone.window();
   const int margin = kPatchRadius + 1;
@@ -244,7 +240,7 @@ std::vector<Place> textured_places(const Plane<float>& tone, int count, Workers&
     double most = kLeastTexture;
     for (int y = y0; y < std::min(y0 + cell, inner.y1); y += step)
       for (int x = x0; x < std::min(x0 + cell, inner.x1); x += step)
-        if (const double here = texture(tone, x, y); here > most) most = here, best[i] = Place{x, y};
+        if (const double here = texture_at(tone, x, y); here > most) most = here, best[i] = Place{x, y};
   });
   std::vector<Place> places;
   for (const std::optional<Place>& place : best)

@@ -41,6 +41,12 @@ struct Place {
   int x = 0, y = 0;
 };
 
+/// Texture in both directions around a pixel: the smaller eigenvalue of the gradients' moments (Shi and Tomasi 1994).
+/// The pixel lies kPatchRadius + 1 inside the picture.
+double texture_at(const Plane<float>& tone, int x, int y);
+
+inline constexpr double kLeastTexture = 1e-5;  ///< of a place: gradients of 0.003 a pixel in either direction
+
 /// The place with the most texture in each cell of a grid of about `count` cells, in reading order; cells without any
 /// have none.
 std::vector<Place> textured_places(const Plane<float>& tone, int count, Workers& workers);

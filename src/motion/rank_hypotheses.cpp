@@ -19,14 +19,6 @@ constexpr std::size_t kJittered = 16;
 
 double length(const glm::dvec2& v) { return std::sqrt(v.x * v.x + v.y * v.y); }
 
-// Wilson's lower bound for a share, 99 % one-sided.
-double lower_bound(double won, double of) {
-  if (!(of > 0)) return 0;
-  constexpr double z = 2.326;
-  const double share = won / of, zz = z * z;
-  return (share + zz / (2 * of) - z * std::sqrt(share * (1 - share) / of + zz / (4 * of * of))) / (1 + zz / of);
-}
-
 using Predict = std::function<glm::dvec2(const FollowedPlace&)>;
 
 // An edge at rest that is sampled once falls on the same pixels wherever the sample was, as if it moved with the
@@ -145,6 +137,19 @@ void count_apart(const VectorHypothesis& first, RankedHypothesis& other, const s
   }
 }
 
+// Share of what moves, by either of them, where they lead apart measurably.
+double share_apart(const VectorHypothesis& first, const VectorHypothesis& other,
+                   const std::vector<FollowedPlace>& places, const Window& display) {
+  std::size_t moving = 0, apart = 0;
+  for (const FollowedPlace& place : places) {
+    const glm::dvec2 a = predicted(first, place, display), b = predicted(other, place, display);
+    if (!std::isfinite(length(a)) || !std::isfinite(length(b)) || !(length(a) > 1 || length(b) > 1)) continue;
+    ++moving;
+    apart += !(length(a - b) < 0.3 * place.pixel + 0.01 * length(place.moved));
+  }
+  return moving > 0 ? double(apart) / double(moving) : 1;
+}
+
 // Pairs of frames in which another hypothesis beats the first one.
 void judge_pairs(ChannelRanking& ranking, const std::vector<RankedHypothesis>& pool,
                  const std::vector<FollowedPlace>& places, const Window& display) {
@@ -209,6 +214,18 @@ void take_rough(ChannelRanking& result, const std::vector<FollowedPlace>& places
 }
 
 }  // namespace
+
+double lower_bound(double won, double of) {
+  if (!(of > 0)) return 0;
+  constexpr double z = 2.326;
+  const double share = won / of, zz = z * z;
+  return (share + zz / (2 * of) - z * std::sqrt(share * (1 - share) / of + zz / (4 * of * of))) / (1 + zz / of);
+}
+
+bool same_here(const ChannelRanking& ranking) {
+  return std::all_of(ranking.ranking.begin(), ranking.ranking.end(),
+                     [](const RankedHypothesis& other) { return !other.rival || other.apart <= kSameHere; });
+}
 
 VectorVotes votes_between(const VectorHypothesis& first, const VectorHypothesis& second,
                           const std::vector<FollowedPlace>& places, const Window& display) {
@@ -290,6 +307,7 @@ ChannelRanking rank_hypotheses(const std::vector<FollowedPlace>& places, int x, 
     }
     if (other.rival) {
       count_apart(first, other, telling, display);
+      other.apart = share_apart(first, other.hypothesis, telling, display);
       result.ranking.push_back(other);
     } else {
       result.confidence = std::min(result.confidence, std::max(other.first_against.at_least, certainty(other.pull)));
@@ -299,6 +317,7 @@ ChannelRanking rank_hypotheses(const std::vector<FollowedPlace>& places, int x, 
   for (std::size_t i = 0; i < std::min(beaten.size(), kShown); ++i) result.ranking.push_back(beaten[i]);
   result.against_rest = votes_against_rest(first, telling, display);
   result.confidence = std::min(result.confidence, result.against_rest.at_least);
+  result.lead = result.confidence;
   judge_pairs(result, all, telling, display);
   result.finding = judge(result);
   if (result.finding == VectorFinding::nothing) take_rough(result, places, x, y, display);

@@ -42,6 +42,7 @@ struct RankedHypothesis {
   Pull pull;                               ///< from the first towards this one, where votes do not decide
   std::size_t alone = 0, first_alone = 0;  ///< of a rival: places that agree with it alone, and with the first alone
   bool rival = false;                      ///< not told from the first one
+  double apart = 1;                        ///< share of the places that move where it leads elsewhere than the first
   std::vector<PairScale> scales;           ///< of a rough reading: the factors of each pair of frames
   double residual = -1;  ///< median patch_difference along its vectors over places that move; -1 where not measured
 };
@@ -54,10 +55,22 @@ struct ChannelRanking {
   VectorVotes against_rest;
   double confidence = 0;  ///< 0..1: least of the bounds by which the first beats every hypothesis that is no rival, and
                           ///< rest; 0 unless one is found
+  double lead = 0;        ///< the same bound whatever is left open
+  bool joined = false;    ///< readings were taken out by another pair of channels, see settle_joined
   std::vector<int> contradicting;  ///< pairs of frames that speak for another hypothesis
   std::vector<int> not_following;  ///< pairs of frames where no motion fits better than the vectors
   std::size_t without_vector = 0;  ///< places that move but hold what they would at rest
 };
+
+/// Wilson's lower bound for a share, 99 % one-sided.
+double lower_bound(double won, double of);
+
+/// Share of places up to which two readings lead to the same places here: the others are measured at a wrong place or
+/// lie where motion ends.
+inline constexpr double kSameHere = 0.05;
+
+/// Whether all that is left leads to the same places in these frames (to 0.3 px and 1 % of the way).
+bool same_here(const ChannelRanking& ranking);
 
 /// Least number of places that move for anything to be said.
 inline constexpr std::size_t kFewestPlaces = 40;

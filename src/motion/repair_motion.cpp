@@ -20,6 +20,8 @@ constexpr double kPlain = 0.15;            // of the contrast of a surface that 
 constexpr double kTexture = 0.004;         // contrast that tells one place of a surface from another
 constexpr std::size_t kSample = 16;        // cells
 constexpr double kSampleGain = 0.8;        // of the misfit of the sample that may remain
+constexpr double kNear = 8;                // px, change of a vector up to which it need not explain more
+constexpr int kFitsAnything = 3;           // cells: they are as many numbers as an affine motion has unknowns
 constexpr double kChance = 1.5;            // in cells to the power 1/2
 constexpr double kCameraLead = 1.15;       // misfit of the camera's motion against that found that still wins
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
@@ -65,20 +67,20 @@ Surfaces sum_surfaces(const VectorCells& cells, const Plane<glm::vec2>& motion, 
   return surfaces;
 }
 
-/// Mean misfit of a cell under a motion that may differ from pixel to pixel.
+/// Mean misfit of a cell under a motion that may differ from pixel to pixel. Where it leads out of sight it explains
+/// nothing, so the misfit of the stored vectors stays.
 template <class At>
 double cost_of(const SeenPair& pair, const VectorCells& cells, const VectorCell& cell,
                const Plane<std::uint32_t>& labels, At at) {
   const Window block = cells.block(cell.column, cell.row);
   double sum = 0;
-  int count = 0;
   for (int y = block.y0; y < block.y1; ++y)
     for (int x = block.x0; x < block.x1; ++x) {
       if (labels.at(x, y) != cell.label) continue;
       const float m = misfit(pair, x, y, at(x, y));
-      if (m >= 0) sum += double(m), ++count;
+      sum += m >= 0 ? double(m) : cell.cost;
     }
-  return 2 * count >= cell.pixels ? sum / count : double(kWorstMisfit) / 2;
+  return sum / cell.pixels;
 }
 
 /// Whether the misfit of a surface is more than noise, and is not that of wires without texture, which a sample meets
@@ -118,10 +120,12 @@ void judge(Surface& s, const SeenPair& pair, const VectorCells& cells, const std
   }
   if (!(weight > 0 && s.stored_cost > 0 && suspicious_apart >= kLeastApart * suspicious_weight)) return;
   // The best of many shifts explains a few cells by chance, so the fewer they are the more it has to explain.
-  const double gain = parameters.gain * std::max(0.0, 1 - kChance / std::sqrt(double(suspicious)));
+  // So does the best of many places: there are more of them the farther one looks, and what repeats is met again.
+  const double off = suspicious_apart / suspicious_weight;
+  const double gain = parameters.gain * (1 - kChance / std::sqrt(double(suspicious))) * std::min(1.0, kNear / off);
   s.by_camera = !camera.empty() && s.camera_cost <= std::max(kCameraLead * s.found_cost, 0.1 * s.stored_cost) &&
                 s.camera_cost <= parameters.gain * s.stored_cost;
-  s.row.wrong = s.by_camera || (s.found_cost <= gain * s.stored_cost && is_plain(s));
+  s.row.wrong = s.by_camera || (suspicious > kFitsAnything && s.found_cost <= gain * s.stored_cost && is_plain(s));
   if (!s.row.wrong) return;
   s.row.found = found / weight;
   s.row.apart = apart / weight;

@@ -4,6 +4,12 @@
 
 namespace varve {
 
+bool repair_uses_cameras(const SequenceInfo& info) {
+  return info.frames_with_camera > 0 &&
+         std::all_of(info.first.subjects.begin(), info.first.subjects.end(),
+                     [](const Subject& s) { return (s.backward || s.forward) && s.depth; });
+}
+
 PlannedPass repair_pass(const SequenceInfo& info, const Parameters& parameters, Plan& plan) {
   const char* const name = "repair motion";
   if (!plan.use_motion) return {name, false, "no vectors"};
@@ -20,18 +26,21 @@ PlannedPass repair_pass(const SequenceInfo& info, const Parameters& parameters, 
     plan.use_id = plan.use_id || ids;
     plan.use_depth = plan.use_depth || depths;
   }
+  const bool cameras = repair_uses_cameras(info);
+  plan.use_cameras = plan.use_cameras || cameras;
   return {name, true,
           std::string(parameters.repair.mode == RepairMotion::on ? "vectors that the pixels refute are replaced"
                                                                  : "vectors are tested, none is changed") +
               "; surfaces are told apart by " +
               (ids      ? "their ids"
                : depths ? "depth and by where vectors change"
-                        : "where vectors change")};
+                        : "where vectors change") +
+              (cameras ? "; what the camera makes of resting things is tried first" : "")};
 }
 
 std::size_t repair_bytes_per_pixel(const Parameters& parameters) {
-  // light of both frames, toned, least and greatest, soft; labels; residual, verdict, how; vectors
-  return parameters.repair.mode == RepairMotion::off ? 0 : 2 * 4 + 2 * 4 + 2 * 4 + 2 * 4 + 4 + 4 + 1 + 1 + 8;
+  // light of both frames, toned, least and greatest, soft; labels; residual, verdict, how; vectors; the camera's
+  return parameters.repair.mode == RepairMotion::off ? 0 : 2 * 4 + 2 * 4 + 2 * 4 + 2 * 4 + 4 + 4 + 1 + 1 + 8 + 8;
 }
 
 double repair_nanoseconds(const Parameters& parameters) {

@@ -62,13 +62,17 @@ std::vector<Resolved> accumulate_gather(const AccumulatorOptions& options, Frame
   std::vector<Resolved> resolved(states.size());
   std::vector<MotionRepair>& repairs = window[index].repairs;
   repairs.clear();
+  window[index].forward_repairs.clear();
   repairs.resize(states.size());
   for (const std::vector<std::size_t>& group : gathered_together(window[index].headers)) {
     std::vector<GatherMemory>& memory = states[group.front()].gathered;
     resolved[group.front()].accumulated =
         gather_frame(window, group, index, span.first, span.second, options.gather, options.parameters.repair, memory,
                      diagnostics_wanted(options.aovs), workers);
-    for (std::size_t k = 0; k < group.size(); ++k) repairs[group[k]] = std::move(memory[k][index].backward_said);
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      repairs[group[k]] = std::move(memory[k][index].backward_said);
+      window[index].forward_repairs.push_back(std::move(memory[k][index].forward_said));
+    }
   }
   return resolved;
 }

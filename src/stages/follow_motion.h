@@ -18,7 +18,7 @@ struct ForwardMemory {
 /// the surface that lends them. `memory` holds what is needed of the previous frame, and is replaced by this frame's;
 /// clear it at a restart. Returns what the test said, without planes where it was the previous frame's vectors that
 /// were tested; empty without a test.
-MotionRepair follow_motion(Present& present, const MotionParameters& parameters, const RepairParameters& repair,
-                           ForwardMemory& memory, Workers& workers);
+MotionRepair follow_motion(Present& present, const CamerasAround& cameras, const MotionParameters& parameters,
+                           const RepairParameters& repair, ForwardMemory& memory, Workers& workers);
 
 }  // namespace varve

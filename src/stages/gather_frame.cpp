@@ -62,7 +62,12 @@ struct SubjectFrames {
     }
     Plane<glm::vec2> own = stored.clone();
     MotionRepair& said = future ? memory[i].forward_said : memory[i].backward_said;
-    if (tests) said = repair_motion(own, seen(i), seen(to), back, {}, repair, workers);
+    if (tests) {
+      const CamerasAround cameras = cameras_of(window[i], subject);
+      const Plane<glm::vec2> resting = resting_motion(future ? cameras.after : cameras.before, present(i).depth,
+                                                      present(i).jitter.value_or(glm::dvec2(0)), workers);
+      said = repair_motion(own, seen(i), seen(to), back, resting, repair, workers);
+    }
     if (!back.empty() && parameters.return_tolerance > 0) {
       made = trusted_vectors(bare(i), own, bare(to), back, test, parameters.return_tolerance, workers);
       keep_repaired(made, own, said, workers);

@@ -81,6 +81,21 @@ StoredValues values_at(const std::vector<Plane<float>>& channels, const std::vec
   return values;
 }
 
+StoredValues values_between(const std::vector<Plane<float>>& channels, const std::vector<double>& ranges,
+                            const glm::dvec2& at, int radius) {
+  StoredValues values = values_at(channels, ranges, int(std::lround(at.x)), int(std::lround(at.y)), radius);
+  const int x = int(std::floor(at.x)), y = int(std::floor(at.y));
+  const double fx = at.x - x, fy = at.y - y;
+  for (std::size_t c = 0; c < channels.size() && c < values.size(); ++c) {
+    const Plane<float>& plane = channels[c];
+    if (std::isnan(values[c]) || !plane.window().contains(x, y) || !plane.window().contains(x + 1, y + 1)) continue;
+    const auto v = [&](int dx, int dy) { return double(plane.at(x + dx, y + dy)); };
+    const double top = v(0, 0) * (1 - fx) + v(1, 0) * fx, low = v(0, 1) * (1 - fx) + v(1, 1) * fx;
+    values[c] = float(top * (1 - fy) + low * fy);
+  }
+  return values;
+}
+
 std::vector<double> ranges_of(const std::vector<Plane<float>>& channels) {
   std::vector<double> ranges;
   for (const Plane<float>& plane : channels) {
@@ -91,7 +106,7 @@ std::vector<double> ranges_of(const std::vector<Plane<float>>& channels) {
       for (int x = w.x0; x < w.x1; x += step)
         if (std::isfinite(plane.at(x, y))) values.push_back(plane.at(x, y));
     std::sort(values.begin(), values.end());
-    const std::size_t tail = values.size() / 50;
+    const std::size_t tail = values.size() / 1000;
     ranges.push_back(values.empty() ? 0 : double(values[values.size() - 1 - tail]) - double(values[tail]));
   }
   return ranges;

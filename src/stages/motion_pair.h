@@ -35,8 +35,11 @@ FrameVectors read_frame_vectors(const FrameHeaders& headers, std::size_t k, cons
 /// `ranges`, since then two surfaces meet there.
 StoredValues values_at(const std::vector<Plane<float>>& channels, const std::vector<double>& ranges, int x, int y,
                        int radius);
+/// The same between pixels, bilinear; pixel (x, y) lies at (x, y).
+StoredValues values_between(const std::vector<Plane<float>>& channels, const std::vector<double>& ranges,
+                            const glm::dvec2& at, int radius);
 
-/// Range of each channel without its outermost 2 % on either side.
+/// Range of each channel without its outermost thousandth on either side: small things that move count.
 std::vector<double> ranges_of(const std::vector<Plane<float>>& channels);
 
 /// Neighboring frames among `frames`, the least distance apart that occurs, at most `count` pairs spread evenly;

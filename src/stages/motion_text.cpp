@@ -3,10 +3,12 @@
 #include <cmath>
 #include <cstdio>
 #include <initializer_list>
+#include <optional>
 #include <string_view>
 
 #include "base/words.h"
 #include "stages/probe_motion.h"
+#include "stages/reading_options.h"
 
 namespace varve {
 namespace {
@@ -170,6 +172,7 @@ std::string votes_json(const MarkVotes& votes) {
 std::string channels_json(const VectorLayerReport& layer, const VectorReport& report, const Window& display) {
   const ChannelRanking& ranking = report.ranking;
   const auto text = [](const std::string& s) { return json_quote(s); };
+  const std::optional<NamedReading> named = reading_by_names(layer.layer, ranking);
   return json_object({{"x", json_quote(layer.layer.names[std::size_t(ranking.x)])},
                       {"y", json_quote(layer.layer.names[std::size_t(ranking.y)])},
                       {"finding", json_quote(name_of(ranking.finding))},
@@ -183,6 +186,9 @@ std::string channels_json(const VectorLayerReport& layer, const VectorReport& re
                       {"given", report.given ? hypothesis_json(*report.given) : "null"},
                       {"ids", votes_json(report.ids)},
                       {"depths", votes_json(report.depths)},
+                      {"by_names", named ? json_quote(named->convention) : "null"},
+                      {"same_here", json_boolean(same_here(ranking))},
+                      {"joined", json_boolean(ranking.joined)},
                       {"open", json_array(left_open(ranking), text)},
                       {"findings", json_array(report.findings, text)}});
 }
@@ -209,7 +215,9 @@ std::string verdict_text(const VectorLayer& layer, const VectorReport& report, c
       rows.empty() ? "no convention of the table is like that" : "as convention " + joined(rows, " or ");
   switch (ranking.finding) {
     case VectorFinding::found:
-      return text + ": " + same + "; confidence " + number(ranking.confidence, "%.2f");
+      return text + ": " + same +
+             (ranking.joined ? "; which way is told by the other pair of channels, which holds the way back" : "") +
+             "; confidence " + number(ranking.confidence, "%.2f");
     case VectorFinding::rough:
       return "roughly, " + text + ": " + same +
              "; no constant scale brings the vectors onto the motion, which may be curved: " +
@@ -218,9 +226,14 @@ std::string verdict_text(const VectorLayer& layer, const VectorReport& report, c
     case VectorFinding::ambiguous: {
       std::size_t rivals = 0;
       for (const RankedHypothesis& ranked : ranking.ranking) rivals += ranked.rival;
+      if (const std::optional<NamedReading> named = reading_by_names(layer, ranking))
+        return names_text(layer, named->hypothesis) + " lead " + words_of(named->hypothesis) + ": as convention " +
+               named->convention + ", by their names; the pixels allow " + std::to_string(rivals + 1) +
+               " readings that lead to the same places in these frames, and leave open: " +
+               joined(left_open(ranking), ", ");
       return "cannot tell between " + std::to_string(rivals + 1) +
-             " readings that lead to the same places here, such as: " + text + " (" + same +
-             "); left open: " + joined(left_open(ranking), ", ");
+             (same_here(ranking) ? " readings that lead to the same places here, such as: " : " readings, such as: ") +
+             text + " (" + same + "); left open: " + joined(left_open(ranking), ", ");
     }
     default:
       return "contradictory evidence, nothing is chosen; the most agree that " + text + ", and others do not" +

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "base/error.h"
+#include "motion/moving_places.h"
+#include "stages/join_channels.h"
 #include "stages/motion_findings.h"
 #include "stages/motion_pair.h"
 
@@ -66,8 +68,22 @@ struct Followed {
   PairTones tones;
 };
 
+using StoredPair = std::pair<const Plane<float>*, const Plane<float>*>;
+
+// On the whole picture, and half as many on what moves unlike the rest by the stored vectors, whatever they mean.
+std::vector<Place> places_of(const Plane<float>& tone, int pixel, const std::vector<StoredPair>& stored, int count,
+                             Workers& workers) {
+  std::vector<Place> places = textured_places(tone, count, workers);
+  for (const auto& [x, y] : stored) {
+    const std::vector<Place> more = moving_places(tone, pixel, *x, *y, count / 2 / int(stored.size()), places, workers);
+    places.insert(places.end(), more.begin(), more.end());
+  }
+  return places;
+}
+
 // On the finest level that holds on to enough places: smooth pictures and noisy ones are followed by coarser ones.
-Followed follow_places(const Plane<glm::vec4>& here, const Plane<glm::vec4>& earlier, int count, Workers& workers) {
+Followed follow_places(const Plane<glm::vec4>& here, const Plane<glm::vec4>& earlier,
+                       const std::vector<StoredPair>& stored, int count, Workers& workers) {
   const Window &a = here.window(), &b = earlier.window();
   Followed best;
   if (std::min({a.width(), a.height(), b.width(), b.height()}) < kFewestRows) return best;
@@ -76,7 +92,7 @@ Followed follow_places(const Plane<glm::vec4>& here, const Plane<glm::vec4>& ear
   const std::size_t levels = std::min(from.levels.size(), to.levels.size());
   for (int pixel = 1; std::size_t(std::bit_width(unsigned(pixel))) <= levels && pixel <= kCoarsest; pixel *= 2) {
     Followed found;
-    const std::vector<Place> places = textured_places(from.fine(), count, workers);
+    const std::vector<Place> places = places_of(from.fine(), pixel, stored, count, workers);
     found.textured = places.size();
     found.places = match_places(from, to, places, workers);
     const bool enough = found.places.size() >= kEnoughPlaces;
@@ -120,7 +136,11 @@ void collect_pair(Collected& all, const FrameHeaders& later, const FrameHeaders&
   const glm::dvec2 jitter = pair.jitter_known
                                 ? glm::dvec2(later.jitter->x - earlier.jitter->x, later.jitter->y - earlier.jitter->y)
                                 : glm::dvec2(0);
-  Followed followed = follow_places(here.present.color, there.present.color, probe.places, workers);
+  std::vector<StoredPair> stored;
+  for (std::size_t i = 0; i < here.layers.size(); ++i)
+    for (const auto& [x, y] : belonging(here.layers[i]))
+      stored.push_back({&here.values[i][std::size_t(x)], &here.values[i][std::size_t(y)]});
+  Followed followed = follow_places(here.present.color, there.present.color, stored, probe.places, workers);
   pair.textured = followed.textured;
   pair.followed = followed.places.size();
   const int index = int(all.pairs.size());
@@ -141,8 +161,8 @@ void collect_pair(Collected& all, const FrameHeaders& later, const FrameHeaders&
       place.here = values_at(here.values[i], ranges, m.place.x, m.place.y, kPatchRadius * pixel);
       place.there.fill(std::nanf(""));
       if (same)
-        place.there = values_at(there.values[i], ranges, int(std::lround(m.place.x + m.moved.x)),
-                                int(std::lround(m.place.y + m.moved.y)), kPatchRadius * pixel);
+        place.there =
+            values_between(there.values[i], ranges, glm::dvec2(m.place.x, m.place.y) + m.moved, kPatchRadius * pixel);
       layer->places.push_back(place);
     }
   }
@@ -384,6 +404,13 @@ MotionReport probe_motion(const ResolveJob& job, const std::vector<int>& frames,
       report.layers.push_back(
           judge_layer(all[k], layer, first_headers.front().subjects[k],
                       told_headers && k < told_headers->subjects.size() ? &told_headers->subjects[k] : nullptr));
+  for (std::size_t k = 0, at = 0; k < all.size(); at += all[k].layers.size(), ++k) {
+    std::vector<JudgedChannels> judged;
+    for (std::size_t i = 0; i < all[k].layers.size(); ++i)
+      for (VectorReport& channels : report.layers[at + i].channels)
+        judged.push_back({&all[k].layers[i].places, &channels});
+    join_channels(judged);
+  }
 
   // Marks of the first and of the last pair, read again: they are large, and only what was found is held against them.
   if (probe.marks)

@@ -89,7 +89,7 @@ RoleRequest without_vectors(RoleRequest roles);
 ///   layers  [{layer, view, vectors, channels: [{x, y, finding, confidence, conventions: [text], hypotheses: [{text,
 ///           direction, unit, bias, scale, scale_deviation, scale_x, scale_y, sign_x, sign_y, swapped, jitter, score,
 ///           agreement, off, residual, rival, decided, won}], rest: {agreement, off, residual}, floor: residual,
-///           open: [text], findings: [text]}]}]
+///           by_names: convention or null, same_here, joined, open: [text], findings: [text]}]}]
 ///   notes   [text]
 std::string motion_text(const MotionReport& report);
 std::string motion_json(const MotionReport& report);

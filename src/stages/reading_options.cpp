@@ -5,8 +5,6 @@
 #include <cstdio>
 #include <string_view>
 
-#include "motion/rank_hypotheses.h"
-
 namespace varve {
 namespace {
 
@@ -52,6 +50,21 @@ std::vector<std::string> conventions_of_names(const VectorLayer& layer, const Ve
       names.emplace_back(name);
   }
   return names;
+}
+
+std::optional<NamedReading> reading_by_names(const VectorLayer& layer, const ChannelRanking& ranking) {
+  if (ranking.finding != VectorFinding::ambiguous || !same_here(ranking)) return std::nullopt;
+  std::optional<NamedReading> named;
+  for (std::size_t i = 0; i < ranking.ranking.size(); ++i) {
+    if (i > 0 && !ranking.ranking[i].rival) continue;
+    const VectorHypothesis& h = ranking.ranking[i].hypothesis;
+    if (h.scale_free || h.jitter != 0) return std::nullopt;
+    const std::vector<std::string> rows = conventions_of_names(layer, h);
+    if (rows.empty()) continue;
+    if (named) return std::nullopt;
+    named = NamedReading{h, rows.front()};
+  }
+  return named;
 }
 
 std::string reading_options(const VectorLayer& layer, const VectorHypothesis& h) {

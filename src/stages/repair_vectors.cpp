@@ -1,11 +1,20 @@
 #include "stages/repair_vectors.h"
 
+#include <cmath>
+
 namespace varve {
 
-SeenPlanes seen_planes(const Present& present, const RepairParameters& parameters, Workers& workers) {
+SeenPlanes seen_planes(const Present& present, const CamerasAround& cameras, const RepairParameters& parameters,
+                       Workers& workers) {
   if (parameters.mode == RepairMotion::off) return {};
   return {light_of(present.color, workers), present.depth.clone(), present.id.clone(),
-          present.jitter.value_or(glm::dvec2(0))};
+          present.jitter.value_or(glm::dvec2(0)), cameras};
+}
+
+Plane<glm::vec2> resting_motion(const std::optional<CameraChange>& change, const Plane<float>& depth, glm::dvec2 jitter,
+                                Workers& workers) {
+  if (!change || depth.empty()) return {};
+  return camera_motion(depth, jitter, *change, std::hypot(depth.window().width(), depth.window().height()), workers);
 }
 
 void keep_repaired(Plane<glm::vec2>& tested, const Plane<glm::vec2>& repaired, const MotionRepair& repair,

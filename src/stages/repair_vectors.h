@@ -4,6 +4,7 @@
 #include "motion/repair_motion.h"
 #include "plan/parameters.h"
 #include "resolve/present.h"
+#include "stages/cameras_around.h"
 
 namespace varve {
 
@@ -12,6 +13,7 @@ struct SeenPlanes {
   Plane<float> light, depth;
   Plane<std::uint32_t> id;
   glm::dvec2 jitter{0};
+  CamerasAround cameras = {};
 
   bool empty() const { return light.empty(); }
   SeenFrame view() const { return seen_frame(light, depth, id, jitter); }
@@ -23,7 +25,13 @@ struct SeenPlanes {
 };
 
 /// Copies of a present's planes as they are read, before dilation; empty under RepairMotion::off.
-SeenPlanes seen_planes(const Present& present, const RepairParameters& parameters, Workers& workers);
+SeenPlanes seen_planes(const Present& present, const CamerasAround& cameras, const RepairParameters& parameters,
+                       Workers& workers);
+
+/// How what rests in the world moves in the picture: a motion that repair tries first. Empty where camera or depth are
+/// not known; NaN where it is longer than the picture is large. `depth` is planar.
+Plane<glm::vec2> resting_motion(const std::optional<CameraChange>& change, const Plane<float>& depth, glm::dvec2 jitter,
+                                Workers& workers);
 
 /// Vectors that were put in place of wrong ones stay, whatever a later test against the unrepaired vectors of the other
 /// direction made of them in `tested`.

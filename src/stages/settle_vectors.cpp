@@ -57,19 +57,12 @@ std::optional<Choice> choose(const VectorLayer& layer, const VectorReport& repor
     if (first.hypothesis.scale_free && error > 0.005) return std::nullopt;
     return Choice{first.hypothesis, "the other readings lose"};
   }
-  if (ranking.finding != VectorFinding::ambiguous) return std::nullopt;
-  std::optional<Choice> choice;
-  for (const VectorHypothesis& h : left(ranking)) {
-    if (h.scale_free || h.jitter != 0) return std::nullopt;
-    const std::vector<std::string> rows = conventions_of_names(layer, h);
-    if (rows.empty()) continue;
-    if (choice) return std::nullopt;
-    choice = Choice{h,
-                    "of the readings that lead to the same places in these frames, it is the only one that goes with "
-                    "the names of the channels (" +
-                        rows.front() + ")"};
-  }
-  return choice;
+  const std::optional<NamedReading> named = reading_by_names(layer, ranking);
+  if (!named) return std::nullopt;
+  return Choice{named->hypothesis,
+                "of the readings that lead to the same places in these frames, it is the only one that goes with the "
+                "names of the channels (" +
+                    named->convention + ")"};
 }
 
 void apply(const VectorLayer& layer, const VectorHypothesis& h, RoleRequest& roles) {

@@ -9,6 +9,13 @@
 namespace varve {
 namespace {
 
+/// What the report needs.
+MotionRepair counts_of(const MotionRepair& said) {
+  MotionRepair counts;
+  counts.census = said.census, counts.count = said.count;
+  return counts;
+}
+
 /// Puts the motion of this side into the presents, and passes each to `step(k, present, state)`.
 template <class Step>
 void pass_subjects(SideRun& run, SourceFrame& source, const SharedVectors& vectors, const Parameters& parameters,
@@ -20,7 +27,10 @@ void pass_subjects(SideRun& run, SourceFrame& source, const SharedVectors& vecto
     const SideVectors* neighbor = run.neighbor ? &(*run.neighbor)[k] : nullptr;
     MotionRepair said;
     DilatedMotion dilated = motion_to(run.side, (*vectors)[k], neighbor, parameters, said, workers);
-    if (run.side == Side::past) source.repairs[k] = std::move(said);
+    if (run.side == Side::past)
+      source.repairs[k] = std::move(said);
+    else
+      source.forward_repairs.push_back(counts_of(said));
     present.motion = std::move(dilated.motion);
     present.depth = std::move(dilated.depth);
     present.id = std::move(dilated.marks.id);
@@ -38,13 +48,16 @@ SeenFrame view(const SideVectors& frame) {
 
 SharedVectors take_vectors(SourceFrame& source, const RepairParameters& repair, Workers& workers) {
   auto vectors = std::make_shared<std::vector<SideVectors>>();
-  for (Present& present : source.presents)
+  for (std::size_t k = 0; k < source.presents.size(); ++k) {
+    Present& present = source.presents[k];
     vectors->push_back({std::move(present.motion),
                         std::move(present.forward),
                         std::move(present.depth),
                         {std::move(present.id), std::move(present.normal)},
                         repair.mode == RepairMotion::off ? Plane<float>() : light_of(present.color, workers),
-                        present.jitter.value_or(glm::dvec2(0))});
+                        present.jitter.value_or(glm::dvec2(0)),
+                        cameras_of(source, k)});
+  }
   return vectors;
 }
 
@@ -58,16 +71,22 @@ DilatedMotion motion_to(Side side, const SideVectors& here, const SideVectors* n
   const Plane<glm::vec2> none;
   const Plane<glm::vec2>& back = !neighbor ? none : past ? neighbor->forward : neighbor->backward;
   const bool test = neighbor && !here.light.empty();
+  const auto resting = [&](const SideVectors& from, Side to) {
+    const CamerasAround& cameras = from.cameras;
+    return resting_motion(to == Side::past ? cameras.before : cameras.after, from.depth, from.jitter, workers);
+  };
   Plane<glm::vec2> motion, repaired;
   if (!own.empty()) {
     motion = own.clone();
-    if (test) said = repair_motion(motion, view(here), view(*neighbor), back, none, parameters.repair, workers);
+    if (test)
+      said = repair_motion(motion, view(here), view(*neighbor), back, resting(here, side), parameters.repair, workers);
     if (test) repaired = motion.clone();
   } else {
     motion = Plane<glm::vec2>(opposite.window(), 0, glm::vec2(std::numeric_limits<float>::quiet_NaN()));
     Plane<glm::vec2> leading_here = back.clone();
     if (test && !back.empty()) {
-      said = repair_motion(leading_here, view(*neighbor), view(here), none, none, parameters.repair, workers);
+      said = repair_motion(leading_here, view(*neighbor), view(here), none,
+                           resting(*neighbor, past ? Side::future : Side::past), parameters.repair, workers);
       said.residual = {}, said.how = {};  // of the neighbor's pixels
     }
     if (!back.empty())

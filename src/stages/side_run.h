@@ -19,6 +19,7 @@ struct SideVectors {
   SurfaceMarks marks;
   Plane<float> light = {};  ///< for the test of the vectors; empty unless it is asked for
   glm::dvec2 jitter{0};
+  CamerasAround cameras = {};
 };
 /// One for each subject of a frame; shared by the runs that pass it.
 using SharedVectors = std::shared_ptr<const std::vector<SideVectors>>;

@@ -26,6 +26,18 @@ void use_cameras(SourceFrame& source, std::vector<Present>& presents, const Sour
 
 }  // namespace
 
+CamerasAround cameras_of(const SourceFrame& source, std::size_t present) {
+  std::size_t next = 0;
+  for (const ColorOutput& output : source.headers.outputs) {
+    const std::size_t place = output.after ? present - next : 0, count = output.after ? output.inputs.size() : 1;
+    if (present < next + count && place < output.inputs.size() && output.inputs[place] < source.cameras.size())
+      return source.cameras[output.inputs[place]];
+    if (present < next + count) return {};
+    next += count;
+  }
+  return {};
+}
+
 SourceFrame read_source_frame(const SourceOptions& options, int frame, const NeighborFrames& neighbors,
                               Workers& workers) {
   const Plan& plan = options.plan;

@@ -24,6 +24,8 @@ struct SourceFrame {
   DeepCounts deep;                    ///< samples of deep parts that were flattened
   std::vector<MotionRepair> repairs;  ///< of the vectors to the frame before, one for each present where they were
                                       ///< tested; filled by the accumulators
+  std::vector<MotionRepair> forward_repairs;  ///< likewise of those to the frame after, where they are followed;
+                                              ///< counts only
 };
 
 /// Names the frame in what a stage has to say: file names alone need not tell it.
@@ -35,6 +37,10 @@ auto in_frame(int frame, Work work) {
     throw Failure(failure.code(), "frame " + std::to_string(frame) + ": " + failure.what());
   }
 }
+
+/// The cameras of one of source.presents: those of its subject, or of the first of several that were combined; none
+/// where they are not used.
+CamerasAround cameras_of(const SourceFrame& source, std::size_t present);
 
 /// What every frame of a job is read by.
 struct SourceOptions {

@@ -37,13 +37,16 @@ bool TwoSidedPass::start_block(std::size_t index) {
 
 bool TwoSidedPass::walk_back(std::size_t last) {
   futures_.clear();
+  forward_repairs_.clear();
   SideRun run{Side::future, {}, {}};
   for (std::size_t i = last + 1; i-- > begin_;) {
     if (stop_()) return false;
     SourceFrame source = read_(i);
     const SharedVectors vectors = take_vectors(source, options_.parameters.repair, workers_);
     std::vector<StrictSide> sides = pass_frame(run, source, vectors, options_, workers_);
-    if (i < end_ && is_wanted(i)) futures_.put(i, std::move(sides));
+    if (!(i < end_ && is_wanted(i))) continue;
+    futures_.put(i, std::move(sides));
+    forward_repairs_[i] = std::move(source.forward_repairs);
   }
   return true;
 }
@@ -73,6 +76,8 @@ std::optional<std::vector<Accumulated>> TwoSidedPass::resolve(std::size_t index,
     ++next_past_->next;
   }
   ++past_->next;
+  if (const auto said = forward_repairs_.find(index); said != forward_repairs_.end())
+    source.forward_repairs = std::move(said->second);
   return merge_frame(past_->run, source, vectors, futures_.take(index), options_, workers_);
 }
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,9 +48,10 @@ class TwoSidedPass {
   std::function<bool()> stop_;
   Workers& workers_;
   StrictStore futures_;
-  std::size_t begin_ = 0, end_ = 0;  ///< of the block at hand: places in the schedule
-  std::optional<Past> past_;         ///< for the block at hand
-  std::optional<Past> next_past_;    ///< for the block after it, where that has another one
+  std::map<std::size_t, std::vector<MotionRepair>> forward_repairs_;  ///< counts of the block's wanted frames
+  std::size_t begin_ = 0, end_ = 0;                                   ///< of the block at hand: places in the schedule
+  std::optional<Past> past_;                                          ///< for the block at hand
+  std::optional<Past> next_past_;  ///< for the block after it, where that has another one
 };
 
 }  // namespace varve

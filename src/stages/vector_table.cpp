@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "base/json.h"
+#include "plan/repair_plan.h"
 #include "stages/repair_vectors.h"
 #include "stages/source_frame.h"
 
@@ -87,9 +88,10 @@ VectorTable inspect_vectors(const ResolveJob& job, const SequenceInfo& info, con
                             const JitterSource& jitter, int pairs, Workers& workers) {
   Plan reads = plan;
   reads.use_motion = reads.use_forward = reads.use_depth = reads.use_id = true;
-  const CameraSource cameras = parse_camera_source(job.camera);
+  reads.use_cameras = reads.use_cameras || repair_uses_cameras(info);
+  const CameraSource cameras_given = parse_camera_source(job.camera);
   CameraTrack track = info.cameras;
-  const SourceOptions options{job, info, reads, jitter, cameras, track, nullptr, false, false};
+  const SourceOptions options{job, info, reads, jitter, cameras_given, track, nullptr, false, false};
   RepairParameters parameters = job.parameters.repair;
   parameters.mode = RepairMotion::check;
   VectorTable table;
@@ -107,9 +109,13 @@ VectorTable inspect_vectors(const ResolveJob& job, const SequenceInfo& info, con
       const Plane<glm::vec2>& stored = past ? here.motion : here.forward;
       if (stored.empty()) continue;
       Plane<glm::vec2> vectors = stored.clone();
-      const SeenPlanes a = seen_planes(here, parameters, workers), b = seen_planes(there, parameters, workers);
+      const CamerasAround cameras = cameras_of(past ? later : earlier, k);
+      const SeenPlanes a = seen_planes(here, cameras, parameters, workers),
+                       b = seen_planes(there, {}, parameters, workers);
+      const Plane<glm::vec2> resting =
+          resting_motion(past ? cameras.before : cameras.after, a.depth, a.jitter, workers);
       const MotionRepair said =
-          repair_motion(vectors, a.view(), b.view(), past ? there.forward : there.motion, {}, parameters, workers);
+          repair_motion(vectors, a.view(), b.view(), past ? there.forward : there.motion, resting, parameters, workers);
       for (const SurfaceVectors& s : said.surfaces) {
         ObjectVectors& object = objects[{k, subject.id ? s.label : 0}];
         object.layer = subject.layer;

@@ -30,12 +30,21 @@ TEST_F(ProbeMotion, RanksReadingsOfTheVectors) {
     EXPECT_TRUE(has(json.out, word)) << word << "\n" << json.out;
 }
 
-TEST_F(ProbeMotion, SteadyMotionLeavesTheDirectionOpen) {
+TEST_F(ProbeMotion, SteadyMotionLeavesTheDirectionToTheNames) {
   synth("pan", "20-23", {"--size", "160x90"});
   const Outcome outcome = probe("pan");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(has(outcome.out, "cannot tell between")) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "velocity.x, velocity.y lead to the previous frame")) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "varve, by their names")) << outcome.out;
   EXPECT_TRUE(has(outcome.out, "direction in time")) << outcome.out;
+}
+
+TEST_F(ProbeMotion, LayersToBothSidesTellTheDirection) {
+  synth("rotation", "20-23", {"--size", "160x90"});
+  const Outcome outcome = probe("rotation", {"--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(has(outcome.out, "\"finding\":\"found\"")) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "\"joined\":true")) << outcome.out;
 }
 
 TEST_F(ProbeMotion, OneFrameShowsNothing) {

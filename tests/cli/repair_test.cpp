@@ -2,7 +2,12 @@
 // they are right.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
 #include "base/json.h"
+#include "paths.h"
 #include "scene_cli.h"
 
 namespace varve::test {
@@ -56,6 +61,30 @@ TEST_F(RepairCli, RightVectorsAreNotAccused) {
   }
 }
 
+TEST_F(RepairCli, VectorsOfARealShotAreNotAccused) {
+  const std::string shot = VARVE_DATA "/courtyard/jit/";
+  if (!std::filesystem::exists(shot)) GTEST_SKIP() << "no development data";
+  const Outcome outcome = run_varve(
+      {"probe", shot + "frame.####.exr", "--jitter", shot + "jitter.csv", "--vectors", "15", "--json"}, folder.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::optional<JsonValue> json = parse_json(outcome.out);
+  ASSERT_TRUE(json && json->find("vectors"));
+  for (const std::string& sentence : sentences(*json->find("vectors"))) ADD_FAILURE() << sentence;
+}
+
+TEST_F(RepairCli, RightVectorsResolveToTheSamePicture) {
+  synth("quality-all", "6-10", {"--size", "160x90"});
+  for (const std::string preset : {"salvi", "standard"}) {
+    ASSERT_EQ(resolve_into("in/quality-all.####.exr", preset + "off", {"--preset", preset}, {}).code, 0);
+    const Outcome on = resolve_into("in/quality-all.####.exr", preset + "on", {"--preset", preset},
+                                    {"--repair-motion", "on", "--report", preset + ".json"});
+    ASSERT_EQ(on.code, 0) << on.err;
+    EXPECT_EQ(on.err.find("of the vectors wrong"), std::string::npos) << on.err;
+    EXPECT_EQ(run_varve({"compare", preset + "off/o.####.exr", preset + "on/o.####.exr"}, folder.path()).code, 0)
+        << preset;
+  }
+}
+
 TEST_F(RepairCli, OneFrameOnlyIsSaid) {
   synth("crossing", "3");
   const Outcome outcome = run_varve({"probe", "in/crossing.####.exr", "--vectors", "3"}, folder.path());
@@ -82,6 +111,26 @@ TEST_F(RepairCli, EveryAccumulatorRepairsWithTheSameBytesForAnyThreads) {
     EXPECT_EQ(
         run_varve({"compare", accumulator + "off/o.####.exr", accumulator + "check/o.####.exr"}, folder.path()).code, 0)
         << accumulator;
+  }
+}
+
+TEST_F(RepairCli, WhatRestsIsRepairedByTheCamera) {
+  for (const std::string where : {"note", "none"}) {
+    std::filesystem::remove_all(folder / "in");
+    synth("sky-zero", "8-9", {"--size", "160x90", "--cameras", where});
+    for (const std::string accumulator : {"recursive", "two-sided", "gather"}) {
+      const std::string name = where + accumulator;
+      const Outcome outcome =
+          resolve_into("in/sky-zero.####.exr", name,
+                       {"--preset", accumulator == "gather" ? "draft" : "salvi", "--accumulator", accumulator},
+                       {"--camera-motion", "missing", "--repair-motion", "on", "--report", name + ".json"});
+      ASSERT_EQ(outcome.code, 0) << outcome.err;
+      const std::string report = bytes_of(folder / (name + ".json")), key = "\"vectors_by_camera\":";
+      double most = 0;
+      for (std::size_t at = 0; (at = report.find(key, at)) != std::string::npos;)
+        most = std::max(most, std::strtod(report.c_str() + (at += key.size()), nullptr));
+      EXPECT_EQ(most > 6000, where == "note") << name << ": " << most;
+    }
   }
 }
 

@@ -2,26 +2,23 @@
 // of its pixels is measured once, its vectors are put into each form in turn, and the ranking is asked what they mean.
 // Usage: measure_conventions NAME PATTERN FRAMES X Y ENCODING X Y ENCODING, where ENCODING is down or up, first the
 // vectors to the previous frame, then those to the next; "negated" before the second encoding turns them round.
-// Prints one line: NAME,hypotheses,single,left open,silent,wrong,worst of what is wrong.
+// Prints two lines, for one pair of channels stored and for both: NAME,pairs,ways,one reading,same here,told by names
+// among those,left open,silent,wrong,worst of what is wrong.
 #include <cmath>
 #include <cstdio>
-#include <cstring>
+#include <cstdlib>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "motion/joined_pairs.h"
 #include "motion/rank_hypotheses.h"
 #include "stages/probe_motion.h"
+#include "stages/reading_options.h"
 
 namespace varve {
 namespace {
-
-/// Motion of a place in pixels, y down, to the previous and to the next frame.
-struct Truth {
-  FollowedPlace place;
-  glm::dvec2 here_previous, here_next, there_previous, there_next;
-};
 
 struct Source {
   std::string x, y;
@@ -51,18 +48,15 @@ std::vector<std::pair<glm::dvec2, glm::dvec2>> motion_of(const FollowedFrames& f
   throw Failure(ExitCode::inconsistent, "no layer holds " + source.x + " and " + source.y);
 }
 
-StoredValues stored(const VectorHypothesis& h, const glm::dvec2& motion, const glm::dvec2& jitter,
-                    const Window& display) {
+void store(StoredValues& values, const VectorHypothesis& h, const glm::dvec2& motion, const glm::dvec2& jitter,
+           const Window& display) {
   const MotionEncoding& e = h.encoding;
   const double share = e.unit == MotionUnit::ndc ? 0.5 : 1.0;
   const double unit_x = e.unit == MotionUnit::pixel ? 1 : share * display.width();
   const double unit_y = e.unit == MotionUnit::pixel ? 1 : share * display.height();
   const glm::dvec2 with = motion + double(h.jitter) * jitter;
-  StoredValues values;
-  values.fill(std::nanf(""));
   values[std::size_t(h.x)] = float(e.bias + e.sign_x * with.x / (e.scale * unit_x));
   values[std::size_t(h.y)] = float(e.bias + e.sign_y * with.y / (e.scale * unit_y));
-  return values;
 }
 
 constexpr double kScale = 0.03;  // a measured scale is right to within 3 %
@@ -108,76 +102,147 @@ std::vector<VectorHypothesis> injected() {
 }
 
 struct Count {
-  int single = 0, open = 0, silent = 0, wrong = 0;
+  int single = 0, same = 0, by_names = 0, open = 0, silent = 0, wrong = 0;
+  std::string worst;
 };
+
+/// What is known of a shot: its places, the motion there, and the jitter of its frames.
+struct Known {
+  FollowedFrames followed;
+  std::vector<std::pair<glm::dvec2, glm::dvec2>> backward, forward;
+  std::map<int, glm::dvec2> jitter;
+
+  glm::dvec2 change(int from, int to) const {
+    return jitter.contains(from) && jitter.contains(to) ? jitter.at(from) - jitter.at(to) : glm::dvec2(0);
+  }
+};
+
+/// The vectors of the shot, stored as a reading has them, put into its channels.
+void inject(std::vector<FollowedPlace>& places, const VectorHypothesis& truth, const Known& known) {
+  const bool to_previous = truth.encoding.direction == MotionDirection::previous;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto& [earlier, later] = known.followed.pairs[std::size_t(places[i].pair)];
+    // Where a sample was, minus where it will be found: the change of jitter is added as it is seen from each frame.
+    const glm::dvec2 here = to_previous ? known.change(later, earlier) : known.change(later, later + 1);
+    const glm::dvec2 there = to_previous ? known.change(earlier, earlier - 1) : known.change(earlier, later);
+    const auto& motion = (to_previous ? known.backward : known.forward)[i];
+    store(places[i].here, truth, motion.first, here, known.followed.display);
+    store(places[i].there, truth, motion.second, there, known.followed.display);
+  }
+}
+
+/// The same way of storing for the other side, in the channels after the first two.
+VectorHypothesis other_side(VectorHypothesis h, bool negated) {
+  h.x += 2, h.y += 2;
+  h.encoding.direction =
+      h.encoding.direction == MotionDirection::previous ? MotionDirection::next : MotionDirection::previous;
+  if (negated) h.encoding.sign_x = -h.encoding.sign_x, h.encoding.sign_y = -h.encoding.sign_y;
+  return h;
+}
+
+/// A layer with the names that a convention of the table has for such vectors, if one has.
+bool name_channels(VectorLayer& layer, const VectorHypothesis& h) {
+  const std::vector<std::string_view> rows = conventions_like(h.encoding);
+  if (rows.empty()) return false;
+  const MotionConvention& row = *find_motion_convention(rows.front());
+  const bool previous = h.encoding.direction == MotionDirection::previous;
+  const std::string x(previous ? row.backward_x : row.forward_x), y(previous ? row.backward_y : row.forward_y);
+  layer.name = x.find('.') != std::string::npos ? x.substr(0, x.find('.'))
+                                                : std::string(row.layers.substr(0, row.layers.find(',')));
+  layer.names.assign(4, "");
+  layer.names[std::size_t(h.x)] = x;
+  layer.names[std::size_t(h.y)] = y;
+  return true;
+}
+
+void judge(Count& count, const ChannelRanking& ranking, const VectorHypothesis& truth, const Window& display) {
+  bool first = false, among = false;
+  for (std::size_t k = 0; k < ranking.ranking.size(); ++k) {
+    if (!same(ranking.ranking[k].hypothesis, truth, display)) continue;
+    first = first || k == 0;
+    among = among || k == 0 || ranking.ranking[k].rival;
+  }
+  const bool found = ranking.finding == VectorFinding::found, open = ranking.finding == VectorFinding::ambiguous;
+  if (!found && !open) {
+    ++count.silent;
+    if (std::getenv("CONVENTIONS_VERBOSE"))
+      std::fprintf(stderr, "silent %d: %s%s\n", int(ranking.finding), words_of(truth).c_str(),
+                   truth.x == 1 ? " (swapped)" : "");
+    return;
+  }
+  bool wrong = found ? !first : !among;
+  VectorLayer layer;
+  if (!wrong && open && name_channels(layer, truth))
+    if (const std::optional<NamedReading> named = reading_by_names(layer, ranking)) {
+      wrong = !same(named->hypothesis, truth, display);
+      count.by_names += !wrong;
+    }
+  if (wrong) {
+    ++count.wrong;
+    if (count.worst.empty())
+      count.worst = words_of(truth) + (truth.x == 1 ? " (swapped)" : "") + " taken for " +
+                    words_of(ranking.ranking.front().hypothesis) +
+                    (ranking.ranking.front().hypothesis.x == 1 ? " (swapped)" : "");
+  } else if (found) {
+    ++count.single;
+  } else {
+    ++(same_here(ranking) ? count.same : count.open);
+  }
+}
+
+void print(const std::string& name, const char* pairs, std::size_t ways, const Count& count) {
+  std::printf("%s,%s,%zu,%d,%d,%d,%d,%d,%d,%s\n", name.c_str(), pairs, ways, count.single, count.same, count.by_names,
+              count.open, count.silent, count.wrong, count.worst.c_str());
+}
 
 int run(const std::vector<std::string>& arguments) {
   ResolveJob job;
   job.input.color = SequencePattern::parse(arguments[1]);
   const std::vector<int> frames = parse_frame_list(arguments[2]);
   const Source previous{arguments[3], arguments[4], 1, arguments[5] == "up" ? -1.0 : 1.0};
-  const bool negated = arguments[8].starts_with("negated-");
-  const double turn = negated ? -1 : 1;
+  const double turn = arguments[8].starts_with("negated-") ? -1 : 1;
   const Source next{arguments[6], arguments[7], turn, turn * (arguments[8].ends_with("up") ? -1.0 : 1.0)};
 
   Workers workers;
-  const FollowedFrames followed = follow_frames(job, frames, {}, workers);
-  const auto backward = motion_of(followed, previous), forward = motion_of(followed, next);
-  std::map<int, glm::dvec2> jitter;
+  Known known{follow_frames(job, frames, {}, workers), {}, {}, {}};
+  known.backward = motion_of(known.followed, previous);
+  known.forward = motion_of(known.followed, next);
   for (const int frame : frames)
     if (const FrameHeaders headers =
             read_frame_headers(job.input, frame, without_vectors({}), parse_jitter_source("auto"));
         headers.jitter)
-      jitter[frame] = glm::dvec2(headers.jitter->x, headers.jitter->y);
+      known.jitter[frame] = glm::dvec2(headers.jitter->x, headers.jitter->y);
 
-  Count count;
-  std::string worst;
+  const Window& display = known.followed.display;
   const std::vector<VectorHypothesis> all = injected();
-  for (const VectorHypothesis& truth : all) {
-    std::vector<FollowedPlace> places;
-    for (std::size_t i = 0; i < followed.layers.front().places.size(); ++i) {
-      FollowedPlace place = followed.layers.front().places[i];
-      const auto& [earlier, later] = followed.pairs[std::size_t(place.pair)];
-      const bool to_previous = truth.encoding.direction == MotionDirection::previous;
-      const auto change = [&](int from, int to) {
-        return jitter.contains(from) && jitter.contains(to) ? jitter[from] - jitter[to] : glm::dvec2(0);
-      };
-      // Where a sample was, minus where it will be found: the change of jitter is added as it is seen from each frame.
-      const glm::dvec2 here = to_previous ? change(later, earlier) : change(later, later + 1);
-      const glm::dvec2 there = to_previous ? change(earlier, earlier - 1) : change(earlier, later);
-      place.here = stored(truth, (to_previous ? backward : forward)[i].first, here, followed.display);
-      place.there = stored(truth, (to_previous ? backward : forward)[i].second, there, followed.display);
-      places.push_back(place);
+  std::vector<Count> alone(all.size()), joined(all.size());
+  workers.for_each(all.size(), [&](std::size_t i, int) {
+    const VectorHypothesis& truth = all[i];
+    // As renderers with one sign for both sides store them; every third as Cycles does.
+    const VectorHypothesis other = other_side(truth, i % 3 == 0);
+    std::vector<FollowedPlace> places = known.followed.layers.front().places;
+    inject(places, truth, known);
+    inject(places, other, known);
+    ChannelRanking first = rank_hypotheses(places, 0, 1, display);
+    judge(alone[i], first, truth, display);
+    ChannelRanking second = rank_hypotheses(places, 2, 3, display);
+    if (!first.ranking.empty() && !second.ranking.empty())
+      settle_joined(first, second, join_pairs(places, {0, 1}, {2, 3}, first.ranking.front().hypothesis.encoding.bias));
+    judge(joined[i], first, truth, display);
+  });
+  const auto sum = [](const std::vector<Count>& counts) {
+    Count total;
+    for (const Count& c : counts) {
+      total.single += c.single, total.same += c.same, total.by_names += c.by_names, total.open += c.open;
+      total.silent += c.silent, total.wrong += c.wrong;
+      if (total.worst.empty()) total.worst = c.worst;
     }
-    const ChannelRanking ranking = rank_hypotheses(places, 0, 1, followed.display);
-    bool first = false, among = false;
-    for (std::size_t k = 0; k < ranking.ranking.size(); ++k) {
-      if (!same(ranking.ranking[k].hypothesis, truth, followed.display)) continue;
-      first = first || k == 0;
-      among = among || k == 0 || ranking.ranking[k].rival;
-    }
-    if (ranking.finding == VectorFinding::found)
-      ++(first ? count.single : count.wrong);
-    else if (ranking.finding == VectorFinding::ambiguous)
-      ++(among ? count.open : count.wrong);
-    else
-      ++count.silent;
-    const bool wrong =
-        (ranking.finding == VectorFinding::found && !first) || (ranking.finding == VectorFinding::ambiguous && !among);
-    if (wrong && worst.empty())
-      worst = words_of(truth) + (truth.x == 1 ? " (swapped)" : "") + " taken for " +
-              words_of(ranking.ranking.front().hypothesis) +
-              (ranking.ranking.front().hypothesis.x == 1 ? " (swapped)" : "");
-    if (std::getenv("CONVENTIONS_VERBOSE") && ranking.finding != VectorFinding::found &&
-        ranking.finding != VectorFinding::ambiguous)
-      std::fprintf(stderr, "silent %d: %s%s, best %s agree %.2f\n", int(ranking.finding), words_of(truth).c_str(),
-                   truth.x == 1 ? " (swapped)" : "",
-                   ranking.ranking.empty() ? "-" : words_of(ranking.ranking.front().hypothesis).c_str(),
-                   ranking.ranking.empty() ? 0.0 : ranking.ranking.front().fit.agreement);
-  }
-  std::printf("%s,%zu,%d,%d,%d,%d,%s\n", arguments[0].c_str(), all.size(), count.single, count.open, count.silent,
-              count.wrong, worst.c_str());
-  return count.wrong > 0;
+    return total;
+  };
+  const Count by_one = sum(alone), by_both = sum(joined);
+  print(arguments[0], "one", all.size(), by_one);
+  print(arguments[0], "both", all.size(), by_both);
+  return by_one.wrong + by_both.wrong > 0;
 }
 
 }  // namespace
