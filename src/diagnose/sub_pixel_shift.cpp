@@ -4,13 +4,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
+
+#include <glm/geometric.hpp>
 
 namespace varve {
 namespace {
 
-constexpr std::size_t kParts = 16;          // of the picture, for the standard error
-constexpr int kTile = 16;                   // pixels on the edge of a tile; tiles go to the parts in turns
+constexpr int kTile = 16;                   // pixels on the edge of a tile
+constexpr double kAgrees = 2;               // a tile that is this many times as far off as the usual one counts half
 constexpr float kSameSurface = 0.1f;        // px: vectors of neighbors that differ by more are two surfaces
 constexpr float kStill = 1.0f / 64;         // px
 constexpr float kStructure = 0.01f;         // tone: less around a pixel is flat
@@ -18,10 +21,13 @@ constexpr double kFurthest = 1.5;           // px: two samples of one pixel lie 
 constexpr std::size_t kEnough = 2'000'000;  // pixels; of larger pictures only every n-th row is taken
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// The equation and its derivative, for one part of the picture.
+/// The equation and its derivative, for one tile or the whole picture.
 struct Equation {
   glm::dvec2 sum{0}, by_x{0}, by_y{0};
-  void operator+=(const Equation& e) { sum += e.sum, by_x += e.by_x, by_y += e.by_y; }
+  double energy = 0;  // squares of the gradient
+  void add(const Equation& e, double weight = 1) {
+    sum += weight * e.sum, by_x += weight * e.by_x, by_y += weight * e.by_y, energy += weight * e.energy;
+  }
 };
 
 /// Weights of Catmull and Rom for a place between the second and the third of four values, and their slopes.
@@ -72,38 +78,62 @@ struct Solver {
         const float* row = before.row(qy) + (qx - w.x0);
         const double gx = double(row[1] - row[-1]) / 2, gy = double(before.at(qx, qy + 1) - before.at(qx, qy - 1)) / 2;
         const glm::dvec2 d = glm::dvec2(gx, gy) * (value - double(row[0]));
-        one += {d * (across.weight[i] * down.weight[j]), d * (across.slope[i] * down.weight[j]),
-                d * (across.weight[i] * down.slope[j])};
+        one.add({d * (across.weight[i] * down.weight[j]), d * (across.slope[i] * down.weight[j]),
+                 d * (across.weight[i] * down.slope[j]), across.weight[i] * down.weight[j] * (gx * gx + gy * gy)});
       }
     if (!(std::isfinite(one.sum.x) && std::isfinite(one.sum.y))) return false;
-    e += one;
+    e.add(one);
     return true;
   }
 
-  std::array<Equation, kParts> parts(glm::dvec2 shift, std::size_t& pixels) const {
+  std::vector<Equation> tiles(glm::dvec2 shift, std::size_t& pixels) const {
     const Window w = now.window();
-    const int rows = (w.height() + row_step - 1) / row_step;
-    std::vector<std::array<Equation, 4>> sums(std::size_t(std::max(rows, 0)));
-    std::vector<std::size_t> counts(sums.size());
-    workers.for_rows(0, rows, [&](int i) {
-      const int y = w.y0 + i * row_step;
-      for (int x = w.x0; x < w.x1; ++x)
-        counts[std::size_t(i)] += add(x, y, shift, sums[std::size_t(i)][std::size_t((x - w.x0) / kTile) % 4]);
+    const int across = (w.width() + kTile - 1) / kTile, down = (w.height() + kTile - 1) / kTile;
+    std::vector<Equation> all(std::size_t(across) * std::size_t(down));
+    std::vector<std::size_t> counts(std::size_t(std::max(down, 0)));
+    workers.for_rows(0, down, [&](int band) {
+      for (int y = w.y0 + band * kTile; y < std::min(w.y1, w.y0 + (band + 1) * kTile); ++y) {
+        if ((y - w.y0) % row_step != 0) continue;
+        for (int x = w.x0; x < w.x1; ++x)
+          counts[std::size_t(band)] += add(x, y, shift, all[std::size_t(band * across + (x - w.x0) / kTile)]);
+      }
     });
-    std::array<Equation, kParts> all;
     pixels = 0;
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-      const std::size_t band = i * std::size_t(row_step) / kTile % 4;
-      for (std::size_t k = 0; k < 4; ++k) all[4 * band + k] += sums[i][k];
-      pixels += counts[i];
-    }
+    for (const std::size_t n : counts) pixels += n;
     return all;
   }
 };
 
-Equation sum_of(const std::array<Equation, kParts>& parts) {
+/// How far a tile is from solving the equation, in tone: what its pixels differ by along the gradient.
+double distance_of(const Equation& tile) {
+  return tile.energy > 0 ? glm::length(tile.sum) / std::sqrt(tile.energy) : 0;
+}
+
+/// Shadows move otherwise than the surfaces they fall on, and so do mirrored things. Tiles that are much further off
+/// than most of the structure weigh less (Cauchy's weights).
+std::vector<double> weights_of(const std::vector<Equation>& tiles) {
+  std::vector<std::pair<double, double>> distances;  // and the structure there
+  double structure = 0;
+  for (const Equation& tile : tiles) {
+    if (!(tile.energy > 0)) continue;
+    distances.emplace_back(distance_of(tile), tile.energy);
+    structure += tile.energy;
+  }
+  std::sort(distances.begin(), distances.end());
+  double usual = 0, below = 0;
+  for (std::size_t i = 0; i < distances.size() && !(below >= structure / 2); ++i)
+    usual = distances[i].first, below += distances[i].second;
+  std::vector<double> weights;
+  for (const Equation& tile : tiles) {
+    const double ratio = distance_of(tile) / (kAgrees * usual);
+    weights.push_back(ratio > 0 ? 1 / (1 + ratio * ratio) : 1);
+  }
+  return weights;
+}
+
+Equation sum_of(const std::vector<Equation>& tiles, const std::vector<double>& weights) {
   Equation e;
-  for (const Equation& part : parts) e += part;
+  for (std::size_t i = 0; i < tiles.size(); ++i) e.add(tiles[i], weights[i]);
   return e;
 }
 
@@ -116,13 +146,13 @@ bool newton_step(const Equation& e, glm::dvec2& step) {
   return true;
 }
 
-/// Standard error: the parts of the picture disagree by chance.
-glm::dvec2 error_of(const std::array<Equation, kParts>& parts) {
-  const Equation all = sum_of(parts);
+/// Standard error: the tiles disagree by chance.
+glm::dvec2 error_of(const std::vector<Equation>& tiles, const std::vector<double>& weights) {
+  const Equation all = sum_of(tiles, weights);
   glm::dvec2 squares(0);
-  for (const Equation& part : parts) {
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
     Equation e = all;
-    e.sum = part.sum;
+    e.sum = weights[i] * tiles[i].sum;
     glm::dvec2 step;
     if (!newton_step(e, step)) return glm::dvec2(1e9);
     squares += step * step;
@@ -210,18 +240,20 @@ SubPixelShift measure_shift(const Plane<float>& now, const Plane<float>& before,
   const Plane<float> smooth_now = smooth(now, workers), smooth_before = smooth(before, workers);
   Solver solver{smooth_now, smooth_before, motion, workers};
   solver.row_step = int(1 + now.window().pixels() / kEnough);
-  std::array<Equation, kParts> parts = solver.parts(result.shift, result.pixels);
+  std::vector<Equation> tiles = solver.tiles(result.shift, result.pixels);
+  std::vector<double> weights = weights_of(tiles);
   for (int i = 0; i < 20; ++i) {
     glm::dvec2 step;
-    if (!newton_step(sum_of(parts), step)) return result;
+    if (!newton_step(sum_of(tiles, weights), step)) return result;
     const double length = std::max(std::abs(step.x), std::abs(step.y));
     if (length > 0.5) step *= 0.5 / length;
     result.shift += step;
     if (!(std::max(std::abs(result.shift.x), std::abs(result.shift.y)) <= kFurthest)) return result;
-    parts = solver.parts(result.shift, result.pixels);
+    tiles = solver.tiles(result.shift, result.pixels);
+    weights = weights_of(tiles);
     if (length < 1e-4) break;
   }
-  result.sigma = error_of(parts);
+  result.sigma = error_of(tiles, weights);
   result.found = std::isfinite(result.sigma.x) && std::isfinite(result.sigma.y) && result.sigma.x < 1e8;
   return result;
 }

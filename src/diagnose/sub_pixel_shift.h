@@ -19,8 +19,8 @@ Plane<float> tone_plane(const Plane<glm::vec4>& color, const Plane<float>& valid
 double middle_luma(const Plane<glm::vec4>& color, const Plane<float>& valid);
 
 struct SubPixelShift {
-  glm::dvec2 shift{0};    ///< sample offset of `now` minus that of `before`, pixels, y down
-  glm::dvec2 sigma{1e9};  ///< standard errors of it, pixels, from sixteen parts of the picture; 1e9: nothing to tell by
+  glm::dvec2 shift{0};     ///< sample offset of `now` minus that of `before`, pixels, y down
+  glm::dvec2 sigma{1e9};   ///< standard errors of it, pixels, by how tiles disagree; 1e9: nothing to tell by
   std::size_t pixels = 0;  ///< that took part
   double identical = 0;    ///< share of those with any structure around whose tone is the same to the last bit
   double textured = 0;     ///< share of the pixels that have structure around
@@ -33,7 +33,9 @@ struct SubPixelShift {
 /// gradient never meets the noise of its own pixel, and where the picture is sampled without a filter the sum is still
 /// 0 at the true shift on average, as correlations of edges are straight lines below a pixel. `motion` leads from now
 /// to before (pixels, jitter not in it; NaN: unknown); empty: at rest. Pixels beside a step of the motion take no part:
-/// two surfaces meet there.
+/// two surfaces meet there. Tiles of 16x16 pixels that contradict most of the structure weigh less: shadows and
+/// mirrored things move otherwise than the vectors of the surface. What all tiles share, such as a texture as regular
+/// as the pixels, is not in the standard error.
 SubPixelShift measure_shift(const Plane<float>& now, const Plane<float>& before, const Plane<glm::vec2>& motion,
                             Workers& workers);
 

@@ -57,14 +57,19 @@ std::string names_of(std::span<const Subject> subjects, const Stack& stack) {
   return names;
 }
 
-/// Bare R G B A beside the channels of the first layer whose part has data wherever some layer has, else of the first
-/// one; float if the layer is, below "composite" where the part has bare ones already.
+/// Bare R G B A beside the channels of the first layer whose part has data wherever some layer has; float if the layer
+/// is, below "composite" where the part has bare ones already. Throws where no part has room for all.
 ColorPlace new_place(std::span<const FileHeader> files, std::span<const Subject> subjects, const Stack& stack) {
   const auto window = [&](std::size_t i) { return files.front().parts[std::size_t(part_of(subjects[i]))].data_window; };
   Window all;
   for (const std::size_t i : stack.layers) all = unite(all, window(i));
   const auto whole = std::find_if(stack.layers.begin(), stack.layers.end(), [&](auto i) { return window(i) == all; });
-  const Subject& front = subjects[whole == stack.layers.end() ? stack.layers.front() : *whole];
+  if (whole == stack.layers.end())
+    throw Failure(ExitCode::inconsistent,
+                  "no data window of the layers " + names_of(subjects, stack) +
+                      " holds all of them, so there is no part to write what they make together to; widen that of one "
+                      "layer to hold the others, as oiiotool -a --croptofull does");
+  const Subject& front = subjects[*whole];
   ColorPlace place{part_of(front), {}};
   const Part& part = files.front().parts[std::size_t(place.part)];
   const std::string view = front.default_view || front.view.empty() ? "" : front.view + ".";

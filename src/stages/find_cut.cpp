@@ -26,9 +26,16 @@ constexpr double kSame = 0.4;
 // Where a cut begins. Measured on the scenes of `varve synth`: see tests/unit/find_cut_test.cpp.
 constexpr double kUnexplained = 0.5, kUnexplainedAlone = 0.9, kDistance = 0.06, kLeastDistance = 0.01,
                  kDistanceWithoutVectors = 0.1, kDistanceAlone = 0.3, kTurned = 30, kJudged = 0.05;
+// Where half of all blocks, flat ones too, are lost, the colors need hardly differ: the most that poor vectors and fast
+// motion lost from one frame to the next is a quarter (Beachball; over two frames 0.39).
+constexpr double kLostOfAll = 0.5;
+// Fewer blocks than these are lost by chance (pictures of some 64x36): up to a distance of 0.12 in the scenes of synth.
+constexpr int kFewBlocks = 20;
+constexpr double kDistanceOfFew = 0.15;
 
-// Blocks whose light changed by the same factor, up to this one, changed alike.
-constexpr double kAgree = 1.1;
+// Blocks whose light changed by the same factor, up to this one, changed alike. Means of few samples are not surer than
+// the second, which will do for steps that are far from none: of small ones it made false alarms in pictures of 64x36.
+constexpr double kAgree = 1.1, kAgreeRoughly = 1.3, kLargeStep = 1.45;
 
 /// Means over the valid pixels of the blocks: luma, red and green share; NaN where no pixel is valid.
 struct Blocks {
@@ -193,6 +200,7 @@ void compare_blocks(const FrameTrace& before, const FrameTrace& now, int steps, 
       // Structure on one side only is as unlike as can be.
       if (!(c.correlation >= kSame)) ++lost;
     }
+  e.blocks = judged;
   e.judged = double(judged) / double(std::max<std::size_t>(1, grid.pixels()));
   e.unexplained = judged > 0 ? double(lost) / judged : 0;
 }
@@ -254,10 +262,12 @@ CutEvidence judge_cut(const FrameTrace& before, const FrameTrace& now, int steps
                distance_of(before.greens, now.greens);
   if (before.world_to_camera && now.world_to_camera)
     e.turned = turned_between(*before.world_to_camera, *now.world_to_camera);
-  const double far = e.with_vectors ? kDistance : kDistanceWithoutVectors;
-  const bool lost = e.unexplained > kUnexplained &&
-                    (e.distance > far || e.turned > kTurned ||
-                     (e.with_vectors && e.unexplained > kUnexplainedAlone && e.distance > kLeastDistance));
+  const bool few = e.blocks < kFewBlocks;
+  const double far = few ? kDistanceOfFew : e.with_vectors ? kDistance : kDistanceWithoutVectors;
+  const bool beyond_doubt = e.unexplained > kUnexplainedAlone || e.unexplained * e.judged > kLostOfAll;
+  const bool lost =
+      e.unexplained > kUnexplained && (e.distance > far || e.turned > kTurned ||
+                                       (e.with_vectors && !few && beyond_doubt && e.distance > kLeastDistance));
   // Flat pictures have nothing to follow; there only the colors tell.
   e.cut = e.judged >= kJudged ? lost : e.distance > kDistanceAlone;
   e.sentence = in_words(e);
@@ -282,7 +292,10 @@ ExposureStep exposure_step(const FrameTrace& before, const FrameTrace& now, int 
   std::sort(ratios.begin(), ratios.end());
   ExposureStep step;
   step.ratio = ratios[ratios.size() / 2];
-  const auto agree = [&](double r) { return r > step.ratio / kAgree && r < step.ratio * kAgree; };
+  const double size = std::max(step.ratio, 1 / step.ratio);
+  // A block that is nearer to no step than to this one does not agree.
+  const double within = size > kLargeStep ? std::min(std::sqrt(size), kAgreeRoughly) : kAgree;
+  const auto agree = [&](double r) { return r > step.ratio / within && r < step.ratio * within; };
   step.agreed = double(std::count_if(ratios.begin(), ratios.end(), agree)) / double(compared);
   return step;
 }

@@ -33,6 +33,7 @@ FrameTrace trace_of(const Present& present, const Plane<glm::vec2>& motion,
 /// What was found between two frames.
 struct CutEvidence {
   double judged = 0;       ///< share of the blocks that have any structure to compare
+  int blocks = 0;          ///< how many these are
   double unexplained = 0;  ///< of those: share that does not look like what its vector leads to, whatever the light
   double distance = 0;     ///< between the distributions of tone and hue, 0 and up (Wasserstein, summed)
   double turned = 0;       ///< degrees between the cameras; 0 where none is known

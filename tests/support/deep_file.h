@@ -5,8 +5,10 @@
 #include <OpenEXR/ImfDeepFrameBuffer.h>
 #include <OpenEXR/ImfDeepScanLineOutputPart.h>
 #include <OpenEXR/ImfDeepTiledOutputPart.h>
+#include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 
 #include <Imath/half.h>
@@ -30,7 +32,8 @@ struct DeepTestPart {
   std::string name;
   Imath::Box2i display, data;
   Imf::Compression compression = Imf::ZIPS_COMPRESSION;
-  int tile = 0;  ///< edge of its tiles; 0: scan lines
+  int tile = 0;       ///< edge of its tiles; 0: scan lines
+  bool flat = false;  ///< a flat part of scan lines: every pixel has one sample
   std::vector<DeepTestChannel> channels;
 
   int width() const { return data.max.x - data.min.x + 1; }
@@ -82,13 +85,29 @@ inline PackedChannel pack(const DeepTestChannel& channel) {
   return packed;
 }
 
+/// One sample of each pixel, as a flat part.
+inline void write_flat(Imf::MultiPartOutputFile& file, int number, const DeepTestPart& part) {
+  const std::ptrdiff_t origin = part.data.min.x + std::ptrdiff_t(part.data.min.y) * part.width();
+  std::vector<PackedChannel> packed;
+  for (const DeepTestChannel& channel : part.channels) packed.push_back(pack(channel));
+  Imf::FrameBuffer frame;
+  for (std::size_t c = 0; c < packed.size(); ++c) {
+    const std::ptrdiff_t size = part.channels[c].type == Imf::HALF ? 2 : 4;
+    frame.insert(part.channels[c].name, Imf::Slice(part.channels[c].type, packed[c].bytes.data() - origin * size,
+                                                   std::size_t(size), std::size_t(size * part.width())));
+  }
+  Imf::OutputPart out(file, number);
+  out.setFrameBuffer(frame);
+  out.writePixels(part.data.max.y - part.data.min.y + 1);
+}
+
 /// Writes the parts into one file.
 inline void write_deep(const std::string& path, const std::vector<DeepTestPart>& parts) {
   std::vector<Imf::Header> headers;
   for (const DeepTestPart& part : parts) {
     Imf::Header header(part.display, part.data);
     header.compression() = part.compression;
-    header.setType(part.tile > 0 ? Imf::DEEPTILE : Imf::DEEPSCANLINE);
+    header.setType(part.flat ? Imf::SCANLINEIMAGE : part.tile > 0 ? Imf::DEEPTILE : Imf::DEEPSCANLINE);
     header.setName(part.name.empty() ? "deep" : part.name);
     if (part.tile > 0)
       header.setTileDescription(Imf::TileDescription(unsigned(part.tile), unsigned(part.tile), Imf::ONE_LEVEL));
@@ -99,6 +118,10 @@ inline void write_deep(const std::string& path, const std::vector<DeepTestPart>&
   Imf::MultiPartOutputFile file(path.c_str(), headers.data(), int(headers.size()));
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const DeepTestPart& part = parts[p];
+    if (part.flat) {
+      write_flat(file, int(p), part);
+      continue;
+    }
     std::vector<unsigned> counts;
     for (const auto& pixel : part.channels.front().values) counts.push_back(unsigned(pixel.size()));
     const std::ptrdiff_t origin = part.data.min.x + std::ptrdiff_t(part.data.min.y) * part.width();

@@ -8,6 +8,7 @@
 
 #include "diagnose/color_print.h"
 #include "diagnose/stuck_detail.h"
+#include "reference/sub_pixel_shift_reference.h"
 #include "support/scenes.h"
 
 namespace varve {
@@ -57,6 +58,43 @@ TEST(SubPixelShift, IsFoundAtRestAndAlongAMove) {
         EXPECT_LT(s.identical, 0.9);
       }
     }
+}
+
+TEST(SubPixelShift, IsWhatTheSlowTwinFinds) {
+  Workers workers(2);
+  const Plane<glm::vec4> a = sampled({0.1, -0.2}), b = sampled({2.3 + 0.4, -1.6 + 0.1});
+  // An odd part of the picture, and motion with a step in it.
+  const Window w{-3, 5, 74, 58};
+  Plane<glm::vec4> now(w), before(w);
+  Plane<glm::vec2> motion(w);
+  for (int y = w.y0; y < w.y1; ++y)
+    for (int x = w.x0; x < w.x1; ++x) {
+      now.at(x, y) = b.at(x + 20, y + 10), before.at(x, y) = a.at(x + 20, y + 10);
+      motion.at(x, y) = x + y < 20 ? glm::vec2(0.7f, 0.2f) : glm::vec2(2.3f, -1.6f);
+    }
+  const Plane<float> tone_now = tone(now, workers), tone_before = tone(before, workers);
+  const SubPixelShift fast = measure_shift(tone_now, tone_before, motion, workers);
+  const reference::Shift slow = reference::sub_pixel_shift(tone_now, tone_before, motion);
+  ASSERT_TRUE(fast.found);
+  EXPECT_NEAR(fast.shift.x, slow.shift.x, 2e-4);
+  EXPECT_NEAR(fast.shift.y, slow.shift.y, 2e-4);
+  EXPECT_NEAR(fast.sigma.x, slow.sigma.x, 0.01 * slow.sigma.x);
+  EXPECT_NEAR(fast.sigma.y, slow.sigma.y, 0.01 * slow.sigma.y);
+}
+
+TEST(SubPixelShift, WhatMovesWithoutVectorsHardlyBendsIt) {
+  Workers workers(2);
+  const glm::dvec2 shift(0.3, -0.4);
+  Plane<glm::vec4> before = sampled({}), now = sampled(shift);
+  for (int y = 20; y < 60; ++y)  // a shadow that goes four pixels to the right
+    for (int x = 0; x < 120; ++x) {
+      if (x >= 30 && x < 60) before.at(x, y) *= 0.2f;
+      if (x >= 34 && x < 64) now.at(x, y) *= 0.2f;
+    }
+  const SubPixelShift s = measure_shift(tone(now, workers), tone(before, workers), {}, workers);
+  ASSERT_TRUE(s.found);
+  EXPECT_NEAR(s.shift.x, shift.x, 0.1);
+  EXPECT_NEAR(s.shift.y, shift.y, 0.1);
 }
 
 TEST(SubPixelShift, ExposureIsNothingAndThreadsAreNothing) {
