@@ -24,11 +24,11 @@ struct Settings {
   ProgressStyle progress = ProgressStyle::automatic;
   bool quiet = false, verbose = false;
 
-  int pixels = 0;  ///< frames whose pixels probe measures
+  int pixels = 0;         ///< frames whose pixels probe measures
   int jitter_frames = 0;  ///< frames whose jitter probe measures
   bool facts = false;     ///< probe looks for cuts, flashes and the like
   bool json = false;
-  int vectors = 0;  ///< pairs of frames whose vectors probe tests object by object
+  int vectors = 0;      ///< pairs of frames whose vectors probe tests object by object
   bool motion = false;  ///< whether probe holds the vectors against the pixels
 
   CompareJob compare;          ///< shares frames, cuts, roles and threads with `job`

@@ -21,7 +21,7 @@ struct ResolveJob {
   std::vector<int> cuts;                       ///< first frames of new shots
   bool find_cuts = false;                      ///< look for more of them in the pixels
   RoleRequest roles;
-  bool check_motion = true;  ///< hold the vectors against the pixels of a few frames first
+  bool check_motion = true;     ///< hold the vectors against the pixels of a few frames first
   std::string jitter = "auto";  ///< see parse_jitter_source
   std::string camera = "auto";  ///< see parse_camera_source
   Parameters parameters;

@@ -16,7 +16,8 @@ struct MainFrame {
   std::optional<std::vector<double>> world_to_camera;  ///< 16 numbers, row major, as the attribute has them
 };
 
-/// Reads one layer of a frame: the one that is asked for, or the main one where several are. Throws Failure naming the frame.
+/// Reads one layer of a frame: the one that is asked for, or the main one where several are. Throws Failure naming the
+/// frame.
 MainFrame read_main_frame(const InputSequence& input, int frame, const RoleRequest& roles, const JitterSource& jitter,
                           const MotionParameters& motion, Workers& workers);
 

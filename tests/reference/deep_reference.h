@@ -18,8 +18,8 @@ std::vector<Piece> split(const Piece& piece, double z);
 /// Two pieces in the same place.
 Piece merge(const Piece& a, const Piece& b);
 
-/// Splits at every front and back that lies inside a piece, sorts by front and back, merges volumes that coincide. Points are
-/// never merged. `shares` of the input are set to say whose each piece is.
+/// Splits at every front and back that lies inside a piece, sorts by front and back, merges volumes that coincide.
+/// Points are never merged. `shares` of the input are set to say whose each piece is.
 std::vector<Piece> tidy(std::vector<Piece> pieces);
 
 struct Flat {
