@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "base/median.h"
+
 namespace varve {
 namespace {
 
@@ -58,12 +60,6 @@ struct Witness {
   double weight;  // by distance and size
 };
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double distance(glm::dvec2 a, glm::dvec2 b) { return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)); }
 
 glm::dvec2 middle_of(const VectorCells& cells, const VectorCell& cell) {
@@ -77,7 +73,7 @@ ShiftModel fit(const VectorCells& cells, const VectorCell& centre, const std::ve
   if (witnesses.empty()) return model;
   std::vector<double> xs, ys;
   for (const Witness& w : witnesses) xs.push_back(w.found->shift.x), ys.push_back(w.found->shift.y);
-  model.shift = {median(std::move(xs)), median(std::move(ys))};
+  model.shift = {upper_median(std::move(xs)), upper_median(std::move(ys))};
   model.known = true;
   double outlier = 3;  // wide at first: a surface that turns is far from its median
   for (int round = 0; round < kRounds; ++round, outlier = std::max(kOutlier, outlier / 2)) {
@@ -119,7 +115,7 @@ double misfit_of(const ShiftModel& model, const VectorCells& cells, const std::v
     offs.push_back(distance(model.shift + (at.x - model.middle.x) * model.per_x + (at.y - model.middle.y) * model.per_y,
                             w.found->shift));
   }
-  return median(std::move(offs));
+  return upper_median(std::move(offs));
 }
 
 }  // namespace

@@ -5,6 +5,9 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <utility>
+
+#include "base/median.h"
 
 namespace varve {
 namespace {
@@ -28,13 +31,6 @@ constexpr Form kForms[] = {
 
 double length(const glm::dvec2& v) { return std::sqrt(v.x * v.x + v.y * v.y); }
 bool moves(const FollowedPlace& place) { return length(place.moved) > 1; }
-
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 const StoredValues& stored(const VectorHypothesis& h, const FollowedPlace& place) {
   return h.encoding.direction == MotionDirection::previous ? place.here : place.there;
@@ -73,7 +69,7 @@ Fit fit(const std::vector<FollowedPlace>& places, int jitter, Predict predict) {
   if (fit.predicted > 0) {
     fit.agreement = double(agree) / double(fit.predicted);
     fit.rough_agreement = double(roughly) / double(fit.predicted);
-    fit.off = median(distances);
+    fit.off = upper_median(std::move(distances));
   }
   return fit;
 }

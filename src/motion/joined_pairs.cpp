@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "base/median.h"
+
 namespace varve {
 namespace {
 
@@ -13,13 +15,6 @@ constexpr double kSure = 0.6;       // of the votes, at least
 
 double length(const glm::dvec2& v) { return std::sqrt(v.x * v.x + v.y * v.y); }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 glm::dvec2 stored(const StoredValues& values, const std::pair<int, int>& channels, double bias) {
   return {double(values[std::size_t(channels.first)]) - bias, double(values[std::size_t(channels.second)]) - bias};
 }
@@ -28,7 +23,7 @@ glm::dvec2 stored(const StoredValues& values, const std::pair<int, int>& channel
 /// sign turned.
 struct Way {
   std::vector<double> opposite, alike;
-  bool negated() const { return median(alike) < median(opposite); }
+  bool negated() const { return upper_median(alike) < upper_median(opposite); }
   const std::vector<double>& off() const { return negated() ? alike : opposite; }
 };
 
@@ -124,7 +119,7 @@ JoinedPairs join_pairs(const std::vector<FollowedPlace>& places, std::pair<int, 
     return 2 * yes < pair.second.first + pair.second.second;
   };
   joined.tells = joined.decided >= kFewestPlaces && joined.at_least > kSure &&
-                 median(joined.first_previous ? kept_first : kept_second) < kMostOff &&
+                 upper_median(joined.first_previous ? kept_first : kept_second) < kMostOff &&
                  by_first.negated() == by_second.negated() && std::none_of(by_pair.begin(), by_pair.end(), against);
   return joined;
 }

@@ -9,6 +9,8 @@
 
 #include <glm/vec2.hpp>
 
+#include "base/median.h"
+
 namespace varve {
 namespace {
 
@@ -31,12 +33,6 @@ struct Vectors {
   }
 };
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double length(const glm::dvec2& v) { return std::hypot(v.x, v.y); }
 
 /// What most of the picture holds, and how far the rest is from it: all but the last thousandth, unless nothing else
@@ -54,7 +50,7 @@ std::optional<Common> common_of(const Vectors& vectors, int step) {
     for (int x = w.x0; x < w.x1; x += step)
       if (const Stored v = vectors.at(x, y)) xs.push_back(v->x), ys.push_back(v->y), all.push_back(*v);
   if (all.empty()) return std::nullopt;
-  Common common{{median(std::move(xs)), median(std::move(ys))}, 0};
+  Common common{{upper_median(std::move(xs)), upper_median(std::move(ys))}, 0};
   for (const glm::dvec2& v : all) far.push_back(length(v - common.middle));
   std::sort(far.begin(), far.end());
   common.longest = far[far.size() - 1 - far.size() / 1000];

@@ -5,17 +5,12 @@
 #include <map>
 #include <utility>
 
+#include "base/median.h"
+
 namespace varve {
 namespace {
 
 double length(const glm::dvec2& v) { return std::sqrt(v.x * v.x + v.y * v.y); }
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 using Motions = std::vector<std::pair<double, double>>;  // stored and measured along one axis
 
@@ -23,10 +18,10 @@ using Motions = std::vector<std::pair<double, double>>;  // stored and measured 
 double factor_of(const Motions& motions) {
   std::vector<double> longs, factors;
   for (const auto& [stored, moved] : motions) longs.push_back(std::abs(stored));
-  const double least = 0.5 * median(longs);
+  const double least = 0.5 * upper_median(longs);
   for (const auto& [stored, moved] : motions)
     if (std::abs(stored) >= least && stored != 0) factors.push_back(moved / stored);
-  return median(factors);
+  return upper_median(factors);
 }
 
 void add_pair(RoughReading& reading, int pair, const std::vector<const FollowedPlace*>& places, const Window& display,
@@ -73,7 +68,7 @@ std::vector<RoughReading> rough_readings(const std::vector<FollowedPlace>& place
           if (scale.along_x > 0) factors.push_back(scale.along_x);
           if (scale.along_y > 0) factors.push_back(scale.along_y);
         }
-        if (const double middle = median(factors); middle > 0) reading.hypothesis.encoding.scale = middle;
+        if (const double middle = upper_median(factors); middle > 0) reading.hypothesis.encoding.scale = middle;
         readings.push_back(std::move(reading));
       }
   std::stable_sort(readings.begin(), readings.end(),

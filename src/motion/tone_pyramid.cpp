@@ -4,6 +4,10 @@
 
 #include "motion/patch_match.h"
 
+#include <utility>
+
+#include "base/median.h"
+
 namespace varve {
 namespace {
 
@@ -50,10 +54,7 @@ double middle_brightness(const Plane<glm::vec4>& color) {
   for (int y = w.y0; y < w.y1; y += step)
     for (int x = w.x0; x < w.x1; x += step)
       if (const double b = brightness(color.at(x, y)); b > 0) positive.push_back(b);
-  if (positive.empty()) return 1;
-  const auto middle = positive.begin() + std::ptrdiff_t(positive.size() / 2);
-  std::nth_element(positive.begin(), middle, positive.end());
-  return *middle;
+  return upper_median(std::move(positive), 1.0);
 }
 
 TonePyramid tone_pyramid(const Plane<glm::vec4>& color, double middle, Workers& workers, std::size_t levels) {

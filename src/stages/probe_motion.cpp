@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/median.h"
 #include "motion/moving_places.h"
 #include "stages/join_channels.h"
 #include "stages/motion_findings.h"
@@ -37,13 +38,6 @@ struct Collected {
   std::vector<MotionPair> pairs;
   Window display;
 };
-
-double median(std::vector<double> values) {
-  if (values.empty()) return -1;
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Plane<float> alpha_over(const Plane<glm::vec4>& color, const Window& window) {
   Plane<float> alpha(window);
@@ -188,7 +182,7 @@ double residual_of(const Collected& all, const std::vector<FollowedPlace>& place
                          tones.earlier, moved / double(tones.pixel));
     differences.push_back(difference.value_or(1.0));
   }
-  return median(std::move(differences));
+  return upper_median(std::move(differences), -1.0);
 }
 
 void measure_residuals(const Collected& all, const std::vector<FollowedPlace>& places, VectorReport& report) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/median.h"
 #include "plan/value.h"
 #include "stages/read_present.h"
 #include "stages/source_frame.h"
@@ -25,10 +26,7 @@ double median_depth(const Present& layer) {
   for (int y = w.y0; y < w.y1; ++y)
     for (int x = w.x0; x < w.x1; ++x)
       if (layer.color.at(x, y).w > 0 && std::isfinite(layer.depth.at(x, y))) depths.push_back(layer.depth.at(x, y));
-  if (depths.empty()) return std::numeric_limits<double>::infinity();
-  const auto middle = depths.begin() + std::ptrdiff_t(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return double(*middle);
+  return double(upper_median(std::move(depths), std::numeric_limits<float>::infinity()));
 }
 
 std::vector<LayerDepth> measure_depths(const ResolveJob& job, int frame, Workers& workers) {
