@@ -27,6 +27,8 @@ Scene quality_still();
 Scene quality_camera();
 Scene quality_objects();
 Scene quality_all();
+Scene indoor_still();
+Scene indoor_moving();
 Scene still_scene();
 Scene pan_scene();
 Scene zoom_scene();
