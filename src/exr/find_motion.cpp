@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/words.h"
 #include "exr/channel_index.h"
+#include "exr/unknown_convention.h"
 
 namespace varve {
 namespace {
@@ -235,9 +236,9 @@ void find_motion(const ChannelIndex& index, const ChannelGroup& color, bool main
   const std::optional<RoleChoice> unknown = choose_role(index, color, main_color, velocity_like(index));
   const std::string layer = subject.layer.empty() ? "the main layer" : "layer " + subject.layer;
   if (unknown && request.convention == "auto")
-    throw Failure(ExitCode::inconsistent,
-                  "the channels " + names_of(index, *unknown->candidate.group) + " look like the motion of " + layer +
-                      ", but their names do not tell which convention they follow: " + std::string(kRemedy));
+    throw UnknownConvention("the channels " + names_of(index, *unknown->candidate.group) + " look like the motion of " +
+                            layer +
+                            ", but their names do not tell which convention they follow: " + std::string(kRemedy));
   if (unknown)
     throw Failure(ExitCode::inconsistent,
                   "convention " + request.convention + " does not have the channels " +

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "exr/unknown_convention.h"
 #include "plan/camera_survey.h"
 #include "plan/find_samples.h"
 
@@ -202,6 +203,8 @@ FrameHeaders read_frame_headers(const InputSequence& input, int frame, const Rol
         headers.jitter = jitter_of(jitter, headers.files.front().parts[std::size_t(channel->part)], frame);
     if (!headers.jitter) headers.jitter = jitter_of(jitter, headers.files.front().parts.front(), frame);
     headers.cameras = cameras_of(headers, cameras);
+  } catch (const UnknownConvention& unknown) {
+    throw UnknownConvention(at_frame(frame) + unknown.what());
   } catch (const Failure& failure) {
     const std::string sentence = failure.what();
     throw Failure(failure.code(), sentence.starts_with("frame ") ? sentence : at_frame(frame) + sentence);

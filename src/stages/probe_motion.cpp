@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/median.h"
+#include "exr/unknown_convention.h"
 #include "motion/moving_places.h"
 #include "stages/join_channels.h"
 #include "stages/motion_findings.h"
@@ -344,10 +345,11 @@ std::optional<FrameHeaders> told_by_names(const ResolveJob& job, int frame, cons
                                           std::string* refusal) {
   try {
     return read_frame_headers(job.input, frame, job.roles, jitter);
+  } catch (const UnknownConvention& unknown) {
+    if (refusal) *refusal = unknown.what();
+    return std::nullopt;
   } catch (const Failure& failure) {
-    // Vectors whose names do not tell what they mean: the pixels are asked instead.
     if (failure.code() != ExitCode::inconsistent) throw;
-    if (refusal) *refusal = failure.what();
     return std::nullopt;
   }
 }

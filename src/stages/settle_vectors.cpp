@@ -195,9 +195,8 @@ SettledVectors settle_vectors(const ResolveJob& job) {
   const int shown = job.frames.empty() ? on_disk.front() : job.frames.front();
   const JitterSource jitter = parse_jitter_source(job.jitter);
   std::string refusal;
-  if (told_by_names(job, shown, jitter, &refusal)) return settled;
-  // Refused for something else.
-  if (refusal.find("which convention they follow") == std::string::npos) return settled;
+  told_by_names(job, shown, jitter, &refusal);
+  if (refusal.empty()) return settled;  // told, or refused for something else
 
   Workers workers(job.threads);
   const MotionReport report = probe_motion(job, on_disk, {.marks = true}, workers);
