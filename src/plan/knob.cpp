@@ -274,6 +274,9 @@ std::vector<Knob> knobs() {
        "Write pixels whose history is younger than this slightly blurred, less with each frame: calms the first frames "
        "after a cut and what was just uncovered. History does not see it. 0 writes them as they are.",
        number([](auto& p) -> auto& { return p.fallback.young_frames; }, {0, 1000})},
+      {"young-filter", "WORD", reject, expert, "What --blur-young writes.",
+       word(
+           [](auto& p) -> auto& { return p.fallback.young_filter; }, kYoungFilters)},
 
       {"sharpen", "STRENGTH", finish, advanced,
        "Sharpens what is written, never the history: 0 not at all, 1 most. Flat areas gain most, edges least, and no "

@@ -72,6 +72,11 @@ constexpr Word<Feedback> kFeedbacks[] = {
     {"fixed", Feedback::fixed, "as --alpha says"},
     {"luma", Feedback::luma, "--feedback-high where the luma of history and present agree, --feedback-low where not"},
 };
+constexpr Word<YoungFilter> kYoungFilters[] = {
+    {"blur", YoungFilter::blur, "the 3x3 mean of the present: noise and edges alike"},
+    {"morphological", YoungFilter::morphological,
+     "stairs along edges become slants, at the pixel centers where the jitter is known; flat areas stay"},
+};
 constexpr Word<MotionBlur> kMotionBlurs[] = {
     {"off", MotionBlur::off, "the resolve"},
     {"own", MotionBlur::own, "the present blurred along the vector of the pixel"},

@@ -249,7 +249,8 @@ class Planner {
              " px and more is shown blurred along its motion";
     if (f.young_frames > 0)
       what += (what.empty() ? "" : "; ") + std::string("the first ") + std::to_string(f.young_frames) +
-              " frames of a history are shown soft";
+              (f.young_filter == YoungFilter::blur ? " frames of a history are shown soft"
+                                                   : " frames of a history are shown with smoothed edges");
     add("fallback", !what.empty(),
         !what.empty()                      ? what + "; history is not touched"
         : f.motion_blur != MotionBlur::off ? "no vectors"

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "resolve/morphology.h"
 #include "resolve/row_passes.h"
+#include "resolve/sample_weights.h"
 
 namespace varve {
 namespace {
@@ -59,6 +61,18 @@ glm::dvec4 blurred_along(const Plane<glm::vec4>& color, int x, int y, glm::dvec2
   return own + sum / 7.0;
 }
 
+/// Smooth edges, brought to the pixel centers where the jitter is known: what history does not calm must not wobble.
+Plane<glm::vec4> smooth_present(const Present& present, Workers& workers) {
+  Plane<glm::vec4> smooth = smooth_edges(present.color, workers);
+  if (!present.jitter) return smooth;
+  const Window& w = smooth.window();
+  Present centered;
+  centered.color = Plane<glm::vec4>(w, kPresentBorder, glm::vec4(0.0f));
+  for (int y = w.y0; y < w.y1; ++y) std::copy_n(smooth.row(y), w.width(), centered.color.row(y));
+  centered.valid = present.valid.clone();
+  return unjitter_bilinear(centered, *present.jitter, workers);
+}
+
 void mix(glm::vec4& color, const glm::dvec4& with, double share) {
   if (!(share > 0)) return;
   for (int k = 0; k < 4; ++k) color[k] = float(double(color[k]) + (with[k] - double(color[k])) * share);
@@ -73,13 +87,16 @@ Plane<glm::vec4> fall_back(const Present& present, const History& resolved, cons
   const bool blurs = p.motion_blur != MotionBlur::off && !present.motion.empty();
   const Plane<glm::vec2> around =
       blurs && p.motion_blur == MotionBlur::neighbors ? longest_around(present.motion, workers) : Plane<glm::vec2>();
+  const bool smooths = p.young_frames > 0 && p.young_filter == YoungFilter::morphological;
+  const Plane<glm::vec4> smoothed = smooths ? smooth_present(present, workers) : Plane<glm::vec4>();
   Plane<glm::vec4> out = resolved.color.clone();
   workers.for_rows(w.y0, w.y1, [&](int y) {
     for (int x = w.x0; x < w.x1; ++x) {
       if (p.young_frames > 0) {
         const double age = double(resolved.total.at(x, y));
         const double share = std::clamp(1 - (age - 1) / p.young_frames, 0.0, 1.0);
-        if (share > 0) mix(out.at(x, y), soft_present(present, x - w.x0, y - w.y0), share);
+        if (share > 0)
+          mix(out.at(x, y), smooths ? glm::dvec4(smoothed.at(x, y)) : soft_present(present, x - w.x0, y - w.y0), share);
       }
       if (!blurs) continue;
       const glm::dvec2 v(around.empty() ? present.motion.at(x, y) : around.at((x - w.x0) / kTile, (y - w.y0) / kTile));

@@ -5,11 +5,15 @@
 
 namespace varve {
 
+/// What stands in for young pixels: the present slightly blurred, or its edges smoothed by their shape.
+enum class YoungFilter { blur, morphological };
+
 /// Both off by default.
 struct FallbackParameters {
   MotionBlur motion_blur = MotionBlur::off;
   double blur_from = 2, blur_to = 15;  ///< px of speed between which the blurred present takes over (Pedersen 2016)
   double young_frames = 0;             ///< frames after a restart in which a soft present stands in, less and less
+  YoungFilter young_filter = YoungFilter::blur;
 
   bool any() const { return motion_blur != MotionBlur::off || young_frames > 0; }
 };
