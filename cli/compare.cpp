@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "commands.h"
 #include "report.h"
 #include "stages/comparison_page.h"
@@ -52,7 +53,7 @@ int exit_of(Verdict verdict) {
 int run_compare(Settings& settings) {
   const CompareJob job = finished_job(settings);
   const Comparison comparison = compare_sequence(job, {});
-  if (settings.json_file != "-") std::fputs(comparison_text(comparison).c_str(), stdout);
+  if (settings.json_file != "-") std::fputs(printable_lines(comparison_text(comparison)).c_str(), stdout);
   if (settings.json_file == "-")
     std::fputs(comparison_json(comparison, job).c_str(), stdout);
   else if (!settings.json_file.empty())
@@ -63,7 +64,7 @@ int run_compare(Settings& settings) {
     write_file(settings.html_file, comparison_page(comparison, job, settings.html_file + ".picture", workers));
   }
   if (comparison.verdict == Verdict::incomparable)
-    std::fputs(("varve: error: A and B cannot be compared: " + comparison.reason + "\n").c_str(), stderr);
+    std::fputs(("varve: error: A and B cannot be compared: " + printable(comparison.reason) + "\n").c_str(), stderr);
   return exit_of(comparison.verdict);
 }
 

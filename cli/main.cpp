@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "commands.h"
 
 namespace {
@@ -26,7 +27,7 @@ void keep_memory() {
 }
 
 int fail(varve::ExitCode code, const std::string& sentence) {
-  std::fputs(("varve: error: " + sentence + "\n").c_str(), stderr);
+  std::fputs(("varve: error: " + varve::printable(sentence) + "\n").c_str(), stderr);
   return int(code);
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "commands.h"
 #include "copy_sequence.h"
 #include "exr/pictures.h"
@@ -67,7 +68,7 @@ MeasureEvents events_of(const Settings& settings) {
   events.should_stop = [] { return stop_signal() != 0; };
   if (settings.quiet) return events;
   events.warning = [](const std::string& sentence) {
-    std::fputs(("varve: warning: " + sentence + "\n").c_str(), stderr);
+    std::fputs(("varve: warning: " + printable(sentence) + "\n").c_str(), stderr);
   };
   const bool terminal = isatty(STDERR_FILENO) == 1;
   events.step = [terminal](const std::string& what, int done, int total) {

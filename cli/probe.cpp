@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "commands.h"
 #include "plan/describe.h"
 #include "stages/check_jitter.h"
@@ -66,7 +67,7 @@ int run_probe(Settings& settings) {
     const VectorTable vectors = inspect_vectors(job, info, plan, jitter, settings.vectors, workers);
     add_to(text, settings.json, "vectors", vector_table_json(vectors), vector_table_text(vectors));
   }
-  std::fputs(text.c_str(), stdout);
+  std::fputs((settings.json ? text : printable_lines(text)).c_str(), stdout);
   if (!text.ends_with('\n')) std::fputc('\n', stdout);
   return int(ExitCode::done);
 }

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "base/printable.h"
 #include "diagnose/aov.h"
 #include "json.h"
 
@@ -204,7 +205,7 @@ void Progress::warning(const std::string& sentence) {
   if (style_ == ProgressStyle::json)
     put(JsonLine().text("event", "warning").text("sentence", sentence).end() + "\n");
   else
-    put("varve: warning: " + sentence + "\n");
+    put("varve: warning: " + printable(sentence) + "\n");
 }
 
 void Progress::leave_line() {

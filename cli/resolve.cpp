@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "commands.h"
 #include "plan/describe.h"
 #include "progress.h"
@@ -21,7 +22,7 @@ void check(const Settings& settings) {
 int describe(const Settings& settings) {
   SequenceInfo info;
   const Plan plan = plan_sequence(settings.job, info);
-  std::fputs(describe_text(info, plan, {}).c_str(), stdout);
+  std::fputs(printable_lines(describe_text(info, plan, {})).c_str(), stdout);
   return int(ExitCode::done);
 }
 
@@ -44,7 +45,7 @@ int run_resolve(Settings& settings) {
   std::vector<std::string> rows;
   ResolveEvents events;
   events.planned = [&](const SequenceInfo& info, const Plan& plan) {
-    if (settings.verbose) std::fputs(describe_text(info, plan, {}).c_str(), stderr);
+    if (settings.verbose) std::fputs(printable_lines(describe_text(info, plan, {})).c_str(), stderr);
   };
   events.frame = [&](const FrameReport& report, int done, int total) {
     progress.frame(report, done, total);

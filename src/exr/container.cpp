@@ -108,9 +108,15 @@ void check_claims(const Container& container, const ReadLimits& limits) {
 
 void check_names(const Container& container) {
   std::set<std::string> seen;
-  for (const Part& part : container.header.parts)
-    if (container.multi_part && !seen.insert(part.name).second)
-      throw Failure(ExitCode::input, "'" + container.file.path() + "' has two parts named '" + part.name + "'");
+  for (const Part& part : container.header.parts) {
+    if (!container.multi_part) return;
+    const bool fresh = seen.insert(part.name).second;
+    if (part.name.empty() || !fresh)
+      throw Failure(ExitCode::input,
+                    "'" + container.file.path() + "' has " +
+                        (part.name.empty() ? "a part without a name" : "two parts named '" + part.name + "'") +
+                        "; render it again with a name for each part");
+  }
 }
 
 // Puts the chunk tables behind the headers and checks that the file reaches that far.

@@ -1,6 +1,7 @@
 #include "program.h"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <algorithm>
@@ -25,9 +26,24 @@ void redirect(const std::filesystem::path& path, int descriptor) {
   if (file < 0 || dup2(file, descriptor) < 0) _exit(127);
 }
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#elif defined(__has_feature)
+constexpr bool kSanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+#else
+constexpr bool kSanitized = false;
+#endif
+
+void obey(const RunLimits& limits) {
+  const rlimit memory{limits.memory_mib << 20, limits.memory_mib << 20}, time{limits.seconds, limits.seconds};
+  if (limits.memory_mib > 0 && !kSanitized) setrlimit(RLIMIT_AS, &memory);
+  if (limits.seconds > 0) setrlimit(RLIMIT_CPU, &time);
+}
+
 }  // namespace
 
-Running::Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder)
+Running::Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                 const RunLimits& limits)
     : out_(fresh_path()), err_(fresh_path()) {
   std::vector<char*> argv;
   std::string program = VARVE_PROGRAM;
@@ -41,6 +57,7 @@ Running::Running(const std::vector<std::string>& arguments, const std::filesyste
     redirect(out_, STDOUT_FILENO);
     redirect(err_, STDERR_FILENO);
     if (chdir(folder.c_str()) != 0) _exit(127);
+    obey(limits);
     execv(program.c_str(), argv.data());
     _exit(127);
   }
@@ -68,8 +85,9 @@ Outcome Running::wait() {
   return {WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_), bytes_of(out_), bytes_of(err_)};
 }
 
-Outcome run_varve(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
-  return Running(arguments, folder).wait();
+Outcome run_varve(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                  const RunLimits& limits) {
+  return Running(arguments, folder, limits).wait();
 }
 
 Folder::Folder() : path_(fresh_path()) { std::filesystem::create_directories(path_); }

@@ -12,13 +12,20 @@ struct Outcome {
   std::string out, err;
 };
 
+/// What a run may take; beyond, it ends by a signal or without memory.
+struct RunLimits {
+  std::size_t memory_mib = 0;  ///< of address space; 0: any; not looked at under sanitizers, which take all there is
+  unsigned seconds = 0;        ///< of the processor; 0: any
+};
+
 /// Runs varve with these arguments in `folder`.
-Outcome run_varve(const std::vector<std::string>& arguments, const std::filesystem::path& folder = ".");
+Outcome run_varve(const std::vector<std::string>& arguments, const std::filesystem::path& folder = ".",
+                  const RunLimits& limits = {});
 
 /// A program that still runs, for signals.
 class Running {
  public:
-  Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+  Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder, const RunLimits& limits = {});
   ~Running();
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
