@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "commands.h"
+#include "report.h"
 
 namespace varve::cli {
 namespace {
@@ -145,6 +146,8 @@ int run_help(Settings& settings) {
     if (!program && !(command && command->has_manual))
       throw Failure(ExitCode::usage, "there is no manual page for \"" + settings.topic + "\"");
     text = manual_page(program ? nullptr : command);
+  } else if (settings.topic == "report-schema") {
+    text = report_schema();
   } else if (settings.topic.empty()) {
     text = overview_text();
   } else if (command) {

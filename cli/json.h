@@ -12,6 +12,7 @@ class JsonLine {
   JsonLine& text(std::string_view name, std::string_view value);
   JsonLine& number(std::string_view name, double value);  ///< null when it is not finite
   JsonLine& flag(std::string_view name, bool value);
+  JsonLine& json(std::string_view name, const std::string& value) { return add(name, value); }  ///< as it is
   std::string end() const { return line_ + "}"; }
 
  private:

@@ -88,11 +88,16 @@ std::string files_section() {
          item(bold("OUT.NNNN.exr"),
               "Written under a temporary name in the same folder, flushed, and renamed, so that a file under its own "
               "name is "
-              "complete.") +
+              "complete. A symbolic link under that name is replaced, not followed.") +
+         item(bold(".OUT.NNNN.exr.varve-*.tmp"),
+              "Temporary files, locked while they are written. What a process left that was killed is removed by the "
+              "next "
+              "run that writes into the folder; those of live processes stay.") +
          section("Attributes") +
          "The first part of every output holds the version of varve, the parameters and the input frames that were "
-         "used, and "
-         "no time of day: equal work gives equal bytes.\n";
+         "used (varve:frames), with a print of what they held (varve:inputs), by which --resume notices frames that "
+         "were "
+         "rendered again, and no time of day: equal work gives equal bytes.\n";
 }
 
 std::string examples_section(std::span<const Example> examples) {
@@ -149,7 +154,7 @@ std::string command_page(const Command& command) {
     for (const Option* option : rows) out += option_item(*option);
   }
   if (command.bit == kResolve)
-    out += topic_sections({"aovs", "rejection", "conventions", "presets", "exit-codes"}) + files_section();
+    out += topic_sections({"aovs", "rejection", "report", "conventions", "presets", "exit-codes"}) + files_section();
   else if (command.bit == kCompare)
     out += topic_sections({"metrics", "conventions", "exit-codes"});
   else if (command.bit == kMeasure)

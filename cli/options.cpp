@@ -1,5 +1,6 @@
 // THE table of options. Names, ranges and texts of the parameters come from knobs().
 #include "compare_options.h"
+#include "farm_options.h"
 #include "jitter_options.h"
 #include "layer_options.h"
 #include "measure_options.h"
@@ -74,9 +75,6 @@ void add_file_options(std::vector<Option>& rows) {
   add({"frames", 'f', "LIST", kEach, kBasic, group,
        "Frames to work on; without it all files that match. Negative frames are written as in -10--5.",
        frames([](auto& s) -> auto& { return s.job.frames; })});
-  add({"preroll", 0, "FRAMES", kResolve, kAdvanced, group,
-       "Frames read before the first one written, so that a chunk of a shot starts with history. 0 starts without.",
-       number([](auto& s) -> auto& { return s.job.preroll; }, {0, 100000})});
   add({"cuts", 0, "LIST", kEach & ~kProbe, kBasic, group, "First frames of new shots; history does not cross them.",
        frames([](auto& s) -> auto& { return s.job.cuts; })});
   add({"find-cuts", 0, "WORD", kResolve, kAdvanced, group,
@@ -86,11 +84,6 @@ void add_file_options(std::vector<Option>& rows) {
        "are none.",
        word(
            [](auto& s) -> auto& { return s.job.find_cuts; }, kFindCuts)});
-  add({"resume", 0, "", kResolve, kBasic, group,
-       "Skip frames whose output is complete and was made with the same parameters from the same frames. Frames that "
-       "were "
-       "rendered again under the same names are not noticed.",
-       flag([](auto& s) -> auto& { return s.job.resume; })});
   add({"keep", 0, "WHICH", kResolve, kAdvanced, group, "What happens to channels that are not resolved.",
        word(
            [](auto& s) -> auto& { return s.job.request.keep_channels; }, kKeeps)});
@@ -255,7 +248,9 @@ void add_diagnostic_options(std::vector<Option>& rows) {
            [](auto& s) -> auto& { return s.job.request.spill_folder; }, "a folder")})
       .completes = Completes::folders;
   add({"report", 0, "FILE", kResolve, kAdvanced, group,
-       "Write a JSON file with one row for each frame: times in seconds and counts of pixels.",
+       "Write a JSON file when the run ends, however it ends: the plan, warnings, and one row for each frame with "
+       "times in "
+       "seconds and counts of pixels; see `varve help report`.",
        text(
            [](auto& s) -> auto& { return s.job.report; }, "a file name")})
       .completes = Completes::files;
@@ -344,6 +339,7 @@ void add_help_options(std::vector<Option>& rows) {
 std::vector<Option> option_table() {
   std::vector<Option> rows;
   add_file_options(rows);
+  add_farm_options(rows);
   add_synth_options(rows);
   add_jitter_options(rows);
   add_channel_options(rows);

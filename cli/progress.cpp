@@ -3,14 +3,12 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 #include "base/printable.h"
-#include "diagnose/aov.h"
 #include "json.h"
+#include "report_fields.h"
 
 namespace varve::cli {
 namespace {
@@ -43,10 +41,6 @@ std::string share_text(std::size_t part, std::size_t whole, const char* what) {
 // Lights of which a part only was named say nothing by their sum.
 bool add_up(const LightSum& lights) { return lights.pixels > 0 && lights.adding_up == lights.pixels; }
 
-double residual(const LightSum& lights, double value) {
-  return add_up(lights) ? value : std::numeric_limits<double>::quiet_NaN();  // null in JSON
-}
-
 std::string residual_text(const LightSum& lights) {
   char text[120];
   std::snprintf(text, sizeof text, ", lights add up to the color within %.2g (%.2g before)", lights.resolved,
@@ -62,45 +56,6 @@ std::string repaired_text(const FrameReport& report) {
   std::snprintf(text, sizeof text, ", %.2g %% of the vectors wrong",
                 100.0 * double(wrong) / double(report.vectors.pixels));
   return text;
-}
-
-JsonLine& add_frame(JsonLine& line, const FrameReport& report) {
-  line.number("frame", report.frame)
-      .text("path", report.path)
-      .flag("written", report.written)
-      .flag("skipped", report.skipped)
-      .number("read_seconds", report.read_seconds)
-      .number("resolve_seconds", report.resolve_seconds)
-      .number("write_seconds", report.write_seconds)
-      .number("pixels", double(report.pixels))
-      .number("not_finite", double(report.not_finite))
-      .number("vectors_bad", double(report.vectors_bad))
-      .number("by_camera", double(report.by_camera))
-      .number("lens_added", double(report.lens_added))
-      .number("vectors_tested", double(report.vectors.pixels))
-      .number("vectors_one_way", double(report.vectors.one_way))
-      .number("vectors_doubtful", double(report.vectors.verdicts[std::size_t(VectorVerdict::doubtful)]))
-      .number("vectors_by_neighbor", double(report.vectors_by[std::size_t(RepairedBy::neighbor)]))
-      .number("vectors_by_camera", double(report.vectors_by[std::size_t(RepairedBy::camera)]))
-      .number("vectors_by_search", double(report.vectors_by[std::size_t(RepairedBy::search)]))
-      .number("vectors_dropped", double(report.vectors_by[std::size_t(RepairedBy::dropped)]))
-      .number("restarted", double(report.restarted))
-      .number("clipped", double(report.clipped))
-      .number("half_overflows", double(report.half_overflows))
-      .number("opacity_held", double(report.opacity_held))
-      .number("companions_not_finite", double(report.companions_not_finite))
-      .number("deep_samples", double(report.deep_samples))
-      .number("deep_repaired", double(report.deep_repaired))
-      .number("light_pixels", double(report.lights.pixels))
-      .number("light_pixels_adding_up", double(report.lights.adding_up))
-      .number("light_residual_input", residual(report.lights, report.lights.input))
-      .number("light_residual", residual(report.lights, report.lights.resolved))
-      .text("restart", report.restart);
-  // Why history was not used, pixel by pixel: one count for each bit of the plane `reject`.
-  for (const RejectName& reason : reject_bits())
-    line.number("rejected_" + std::string(reason.name),
-                double(report.rejected[std::size_t(std::countr_zero(reason.bit))]));
-  return line;
 }
 
 }  // namespace
@@ -143,11 +98,6 @@ std::string frame_line(const FrameReport& report, int done, int total) {
   return line + ", PROGRESS: " + std::to_string(percent(done, total)) + "%";
 }
 
-std::string frame_json(const FrameReport& report) {
-  JsonLine line;
-  return add_frame(line, report).end();
-}
-
 Progress::Progress(ProgressStyle style, bool quiet)
     : style_(style), quiet_(quiet), start_(std::chrono::steady_clock::now()) {
   if (style_ == ProgressStyle::automatic) style_ = isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::plain;
@@ -172,7 +122,9 @@ void Progress::frame(const FrameReport& report, int done, int total) {
       break;
     case ProgressStyle::json: {
       JsonLine line;
-      put(add_frame(line.text("event", "frame"), report).number("done", done).number("total", total).end() + "\n");
+      line.text("event", "frame");
+      for (const ReportField<FrameReport>& field : frame_fields()) line.json(field.name, field.value(report));
+      put(line.number("done", done).number("total", total).end() + "\n");
       break;
     }
     case ProgressStyle::automatic:
@@ -206,6 +158,15 @@ void Progress::warning(const std::string& sentence) {
     put(JsonLine().text("event", "warning").text("sentence", sentence).end() + "\n");
   else
     put("varve: warning: " + printable(sentence) + "\n");
+}
+
+void Progress::waiting(const std::string& sentence) {
+  leave_line();
+  if (style_ == ProgressStyle::none) return;
+  if (style_ == ProgressStyle::json)
+    put(JsonLine().text("event", "waiting").text("sentence", sentence).end() + "\n");
+  else
+    put((style_ == ProgressStyle::openjd ? "openjd_status: " : "varve: ") + printable(sentence) + "\n");
 }
 
 void Progress::leave_line() {

@@ -16,13 +16,17 @@ class Progress {
 
   void frame(const FrameReport& report, int done, int total);
   void warning(const std::string& sentence);
+  /// What the run waits for.
+  void waiting(const std::string& sentence);
   /// The last word: what was written, how long it took.
   void summary(const ResolveSummary& summary);
   /// Leaves the line of the bar, so that other text can follow.
   void leave_line();
 
- private:
+  /// Since it was made.
   double seconds() const;
+
+ private:
   void draw(const FrameReport& report, int done, int total);
 
   ProgressStyle style_;
@@ -33,8 +37,6 @@ class Progress {
 
 /// "frame 7: 0.031 s read, 0.050 s resolve, 0.040 s write, PROGRESS: 43%", without line feed.
 std::string frame_line(const FrameReport& report, int done, int total);
-/// The same as JSON object, without the event's name: also a row of --report.
-std::string frame_json(const FrameReport& report);
 
 /// "0:07", "12:34", "1:02:03".
 std::string clock_text(double seconds);

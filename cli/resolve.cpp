@@ -1,7 +1,8 @@
 // varve resolve.
 #include <cstdio>
-#include <filesystem>
-#include <vector>
+#include <exception>
+#include <new>
+#include <string>
 
 #include "base/error.h"
 #include "base/printable.h"
@@ -10,6 +11,7 @@
 #include "progress.h"
 #include "report.h"
 #include "signals.h"
+#include "stages/preflight.h"
 
 namespace varve::cli {
 namespace {
@@ -26,12 +28,49 @@ int describe(const Settings& settings) {
   return int(ExitCode::done);
 }
 
-std::vector<std::string> output_folders(const ResolveJob& job) {
-  const auto folder_of = [](const std::string& path) { return std::filesystem::path(path).parent_path().string(); };
-  std::vector<std::string> folders = {folder_of(job.output.text())};
-  if (job.diagnostics) folders.push_back(folder_of(job.diagnostics->text()));
-  if (!job.preview_folder.empty()) folders.push_back(job.preview_folder);
-  return folders;
+/// Writes the report of a run that did not come to its end; what happened matters more than that this may fail, too.
+void report_end(const Settings& settings, RunReport& report, bool checked, Progress& progress) {
+  const std::string& path = settings.job.report;
+  if (path.empty() || !(checked || is_free_for_report(path))) return;
+  try {
+    write_file(path, report_text(report));
+  } catch (const Failure& failure) {
+    progress.warning(std::string("there is no report: ") + failure.what());
+  }
+}
+
+void take_plan(RunReport& report, const SequenceInfo& info, const Plan& plan) {
+  report.passes = plan.passes;
+  report.notes = info.notes;
+  report.notes.insert(report.notes.end(), plan.notes.begin(), plan.notes.end());
+  report.frames_requested = int(info.frames.size());
+}
+
+/// Runs, and fills the report as far as it comes.
+void resolve(const Settings& settings, RunReport& report, bool& checked, Progress& progress) {
+  ResolveEvents events;
+  events.planned = [&](const SequenceInfo& info, const Plan& plan) {
+    if (settings.verbose) std::fputs(printable_lines(describe_text(info, plan, {})).c_str(), stderr);
+    take_plan(report, info, plan);
+  };
+  events.checked = [&](const std::string& parameters, const std::string& hash) {
+    report.parameters = parameters;
+    report.hash = hash;
+    checked = true;
+  };
+  events.frame = [&](const FrameReport& frame, int done, int total) {
+    progress.frame(frame, done, total);
+    report.summary.frames_written += frame.written;
+    report.summary.frames_skipped += frame.skipped;
+    if (!settings.job.report.empty()) report.frames.push_back(frame);
+  };
+  events.warning = [&](const std::string& sentence) {
+    progress.warning(sentence);
+    report.warnings.push_back(sentence);
+  };
+  events.waiting = [&](const std::string& sentence) { progress.waiting(sentence); };
+  events.should_stop = [] { return stop_signal() != 0; };
+  report.summary = resolve_sequence(settings.job, events);
 }
 
 }  // namespace
@@ -42,31 +81,40 @@ int run_resolve(Settings& settings) {
   if (settings.dry_run) return describe(settings);
 
   Progress progress(settings.progress, settings.quiet);
-  std::vector<std::string> rows;
-  ResolveEvents events;
-  events.planned = [&](const SequenceInfo& info, const Plan& plan) {
-    if (settings.verbose) std::fputs(printable_lines(describe_text(info, plan, {})).c_str(), stderr);
-  };
-  events.frame = [&](const FrameReport& report, int done, int total) {
-    progress.frame(report, done, total);
-    if (!settings.job.report.empty()) rows.push_back(frame_json(report));
-  };
-  events.warning = [&](const std::string& sentence) { progress.warning(sentence); };
-  events.should_stop = [] { return stop_signal() != 0; };
-
-  watch_signals(output_folders(settings.job));
-  ResolveSummary summary;
-  try {
-    summary = resolve_sequence(settings.job, events);
-  } catch (...) {
-    // What was written before stays valid, and so does its report.
+  RunReport report;
+  bool checked = false;
+  const auto fail = [&](ExitCode code, const char* sentence) {
     progress.leave_line();
-    if (!rows.empty()) write_report(settings.job.report, rows);
+    report.outcome = "failed";
+    report.exit_code = int(code);
+    report.sentence = sentence;
+    report.seconds = progress.seconds();
+    report_end(settings, report, checked, progress);
+  };
+  watch_signals(output_folders(settings.job));
+  try {
+    resolve(settings, report, checked, progress);
+  } catch (const Failure& failure) {
+    fail(failure.code(), failure.what());
+    throw;
+  } catch (const std::bad_alloc&) {
+    fail(ExitCode::input, "memory ran out");
+    throw;
+  } catch (const std::exception& exception) {
+    fail(ExitCode::self_check, exception.what());
     throw;
   }
-  progress.summary(summary);
-  if (!settings.job.report.empty()) write_report(settings.job.report, rows);
-  return summary.stopped ? 128 + stop_signal() : int(ExitCode::done);
+  progress.summary(report.summary);
+  report.seconds = progress.seconds();
+  if (report.summary.stopped) {
+    report.outcome = "stopped";
+    report.exit_code = 128 + stop_signal();
+    report.sentence = "stopped as asked; --resume goes on from here";
+    report_end(settings, report, checked, progress);
+  } else if (!settings.job.report.empty()) {
+    write_file(settings.job.report, report_text(report));
+  }
+  return report.exit_code;
 }
 
 }  // namespace varve::cli

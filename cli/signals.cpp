@@ -18,15 +18,14 @@ std::atomic<int> stop_requested = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
 std::array<int, 8> watched_folders;
 std::size_t watched_count = 0;
-std::array<char, 32> process_mark;  // the process number as it stands in temporary names
+std::array<char, 32> process_mark;  // "-PID-", as it stands in temporary names
 
-/// ".name.exr.varve-PID-N.tmp" and "name.png.PID.tmp".
+/// ".NAME.varve-HOST-PID-N.tmp", see exr/temporary_file.h.
 bool is_own_temporary(const char* name) {
-  const std::size_t length = std::strlen(name), mark_length = std::strlen(process_mark.data());
-  if (length < 4 || std::strcmp(name + length - 4, ".tmp") != 0) return false;
-  const char* mark = std::strstr(name, process_mark.data());
-  return mark != nullptr && mark != name && (mark[-1] == '-' || mark[-1] == '.') &&
-         (mark[mark_length] == '-' || mark[mark_length] == '.');
+  const std::size_t length = std::strlen(name);
+  if (name[0] != '.' || length < 4 || std::strcmp(name + length - 4, ".tmp") != 0) return false;
+  const char* mark = std::strstr(name, ".varve-");
+  return mark != nullptr && std::strstr(mark, process_mark.data()) != nullptr;
 }
 
 /// opendir() may allocate, which a handler must not; the system call below it may be used.
@@ -58,7 +57,7 @@ extern "C" void on_stop(int signal) {
 }  // namespace
 
 void watch_signals(std::span<const std::string> folders) {
-  std::strncpy(process_mark.data(), std::to_string(getpid()).c_str(), process_mark.size() - 1);
+  std::strncpy(process_mark.data(), ("-" + std::to_string(getpid()) + "-").c_str(), process_mark.size() - 1);
   for (const std::string& folder : folders) {
     if (watched_count == watched_folders.size()) break;
     const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -75,6 +74,7 @@ void watch_signals(std::span<const std::string> folders) {
   struct sigaction ignore = {};
   ignore.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &ignore, nullptr);
+  sigaction(SIGXFSZ, &ignore, nullptr);  // a file beyond the limit is a write that fails, with a sentence
 }
 
 int stop_signal() { return stop_requested; }

@@ -8,8 +8,8 @@ namespace varve::cli {
 
 /// From here on the first SIGINT or SIGTERM only sets a flag; the second ends the program at once. No file under a
 /// final name is then unfinished, because files are renamed when they are complete; the temporary files of this process
-/// in `folders` (at most 8 are watched) are removed. A reader of the standard streams that goes away no longer ends the
-/// program.
+/// in `folders` (at most 8 are watched) are removed. A reader of the standard streams that goes away, or a limit
+/// on the size of files, no longer ends the program without a word.
 void watch_signals(std::span<const std::string> folders);
 
 /// The signal that asked to stop; 0: none.

@@ -5,15 +5,20 @@
 #include <set>
 #include <utility>
 
+#include "exr/temporary_file.h"
 #include "stages/accumulate_frame.h"
 #include "stages/combine_resolved.h"
+#include "stages/continue_history.h"
 #include "stages/follow_motion.h"
 #include "stages/frame_window.h"
 #include "stages/preflight.h"
+#include "stages/provenance.h"
+#include "stages/resume.h"
 #include "stages/sequence_facts.h"
 #include "stages/set_up.h"
 #include "stages/settle_vectors.h"
 #include "stages/two_sided_pass.h"
+#include "stages/wait_for_frames.h"
 #include "stages/write_outputs.h"
 
 namespace varve {
@@ -30,14 +35,6 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
-
-/// A finished frame is worked on again only where a later one needs its history.
-bool is_needed(const std::vector<ScheduledFrame>& schedule, std::size_t index, const FrameReach& reach) {
-  bool needed = schedule[index].write && !schedule[index].complete;
-  for (std::size_t k = index + 1; reach.back_to_restart && !needed && k < schedule.size() && !schedule[k].restart; ++k)
-    needed = schedule[k].write && !schedule[k].complete;
-  return needed;
-}
 
 /// Cuts in the pixels, and what else is worth a word, before any frame meets another.
 std::map<int, std::string> look_for_cuts(const Setup& s, const ResolveEvents& events, const std::function<bool()>& stop,
@@ -79,6 +76,8 @@ void count(FrameReport& report, const SourceFrame& source, const std::vector<Res
   report.with_vectors = source.by_camera.pixels;
   report.by_camera = source.by_camera.made + source.by_camera.background;
   report.lens_added = source.by_camera.lens;
+  for (const ColorOutput& output : source.headers.outputs)
+    if (output.combine == Combine::samples) report.samples = std::max(report.samples, int(output.inputs.size()));
   report.deep_samples += source.deep.samples;
   report.deep_repaired += source.deep.defects.total();
   for (const std::vector<MotionRepair>* repairs : {&source.repairs, &source.forward_repairs})
@@ -91,6 +90,7 @@ void count(FrameReport& report, const SourceFrame& source, const std::vector<Res
     report.not_finite += source.presents[k].not_finite;
     report.restarted += resolved[k].accumulated.counts.restarted;
     report.clipped += resolved[k].accumulated.counts.clipped;
+    report.removed_light += resolved[k].accumulated.counts.removed;
     for (std::size_t bit = 0; bit < report.rejected.size(); ++bit)
       report.rejected[bit] += resolved[k].accumulated.counts.rejected[bit];
     report.opacity_held += source.presents[k].opacity_held;
@@ -115,12 +115,17 @@ Plan plan_sequence(const ResolveJob& asked, SequenceInfo& info) {
   const SettledLayers ordered = settle_layers(asked);
   const ResolveJob& job = ordered.job;
   Setup s = set_up(ordered);
-  check_outputs(job, schedule_frames(job, s.info, s.hash));
+  check_outputs(job, schedule_frames(job, s.info));
   info = std::move(s.info);
   return std::move(s.plan);
 }
 
 ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& events) {
+  ResolveSummary summary;
+  const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
+  wait_for_frames(asked, events.waiting, stop);
+  if (summary.stopped) return summary;
+
   // Probe and plan: headers only, unless depth says which layer is in front, or pixels what the vectors mean.
   const SettledVectors settled = settle_vectors(asked);
   const SettledLayers ordered = settle_layers(settled.job);
@@ -132,17 +137,22 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
 
   // Preflight: what will be written, and whether it can be.
   Workers workers(job.threads);
-  ResolveSummary summary;
-  const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
-  std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash);
+  const StateHead* before = s.before ? &*s.before : nullptr;
+  std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, before);
   check_outputs(job, schedule);
-  if (job.find_cuts) schedule = schedule_frames(job, s.info, s.hash, look_for_cuts(s, events, stop, workers));
+  if (events.checked) events.checked(s.parameters, s.hash);
+  for (const std::string& folder : output_folders(job)) remove_leftovers(folder);
+  if (job.find_cuts) schedule = schedule_frames(job, s.info, before, look_for_cuts(s, events, stop, workers));
+  InputWatch watch{job.input};
+  mark_finished(s, watch, schedule);
 
   if (job.check_motion && s.plan.use_motion) check_vectors(job, s.info, events.warning, workers);
   std::vector<SubjectState> states(accumulated_subjects(s.info.first.outputs, s.info.first.subjects).size());
+  if (before) states = continued_states(s, watch);
   std::set<std::string> told;
   const bool recursive = job.parameters.accumulator == Accumulator::recursive;
   CameraTrack camera_track = s.info.cameras;
+  if (before) camera_track.emplace(before->last(), before->cameras);
   const SourceOptions source_options{s.job,
                                      s.info,
                                      s.plan,
@@ -153,8 +163,10 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
                                      s.reach.back_to_restart,
                                      shows_combined(s.aovs)};
   const auto read = [&](std::size_t index) {
-    SourceFrame source =
-        read_source_frame(source_options, schedule[index].frame, neighbors_of(schedule, index), workers);
+    SourceFrame source = read_unchanged(watch, schedule[index].frame, [&] {
+      return read_source_frame(source_options, schedule[index].frame, neighbors_of(schedule, index), workers);
+    });
+    if (before && index == 0) continue_cameras(source, before->cameras, states);
     for (std::size_t k = 0; recursive && k < source.presents.size(); ++k) {
       if (schedule[index].restart) states[k].forward = {};
       source.repairs.push_back(follow_motion(source.presents[k], cameras_of(source, k), job.parameters.motion,
@@ -219,8 +231,10 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
       const FileSet beside = source.pixels.empty() ? read_beside(s, source.headers, workers) : FileSet();
       const FileSet& pixels = source.pixels.empty() ? beside : source.pixels;
       in_frame(scheduled.frame, [&] {
-        report.half_overflows = write_outputs(s, report.path, source.headers, pixels, written.colors,
-                                              frames_used(schedule, i, s.reach), workers);
+        const Provenance provenance = provenance_of(frames_used(schedule, i, s.reach, before, watch));
+        const auto check = [&] { check_unchanged(watch, scheduled.frame); };
+        report.half_overflows =
+            write_outputs(s, report.path, source.headers, pixels, written.colors, provenance, check, workers);
       });
       report.write_seconds = clock.lap();
       report.written = true;
@@ -229,6 +243,8 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
     report.skipped = scheduled.complete;
     summary.frames_skipped += scheduled.complete;
     for (std::size_t k = 0; k < resolved.size(); ++k) states[k].history = std::move(resolved[k].accumulated.history);
+    if (scheduled.leaves_state)
+      save_states(s, source.headers, frames_used(schedule, i, s.reach, before, watch), states);
     if (events.frame) events.frame(report, scheduled.write ? ++done : done, total);
   }
   return summary;

@@ -33,6 +33,8 @@ struct FrameReport {
   std::size_t deep_samples = 0;             ///< of deep parts that were flattened
   std::size_t deep_repaired = 0;            ///< of these left out or put right: no depth, ZBack before Z, bad alpha
   LightSum lights;                          ///< of the colors that have companions; no pixels without
+  double removed_light = 0;                 ///< luminance that --firefly-limit held back, summed over the pixels
+  int samples = 1;                          ///< of each pixel, under --samples
   std::string restart;                      ///< why the history was dropped; empty if it was not
 };
 
@@ -46,6 +48,9 @@ struct ResolveEvents {
   std::function<void(const SequenceInfo&, const Plan&)> planned;
   std::function<void(const FrameReport&, int done, int total)> frame;
   std::function<void(const std::string& sentence)> warning;
+  std::function<void(const std::string& sentence)> waiting;  ///< what is waited for, whenever that changes
+  /// Preflight is passed: nothing that is written lies over an input. With what the headers will say.
+  std::function<void(const std::string& parameters, const std::string& hash)> checked;
   std::function<bool()> should_stop;  ///< looked at between the stages of a frame; no half file remains
 };
 

@@ -1,15 +1,11 @@
 #include "exr/pictures.h"
 
 #include <dlfcn.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <sstream>
@@ -18,6 +14,7 @@
 
 #include "base/error.h"
 #include "exr/pictures_module.h"
+#include "exr/temporary_file.h"
 
 namespace varve {
 namespace {
@@ -79,17 +76,11 @@ Function* function_of(const Module& module, const char* name) {
 void write_png(const Module& module, const std::string& path, const std::vector<unsigned char>& rgb,
                const Window& window) {
   const auto write = function_of<varve_write_png_v1>(module, "varve_write_png_v1_run");
-  const std::string temporary = path + "." + std::to_string(getpid()) + ".tmp";
+  TemporaryFile temporary(path);
   std::array<char, 512> reason{};
-  std::string why;
-  if (write(temporary.c_str(), rgb.data(), window.width(), window.height(), reason.data(), reason.size()) != 0)
-    why = reason.data();
-  else if (std::rename(temporary.c_str(), path.c_str()) != 0)
-    why = std::strerror(errno);
-  else
-    return;
-  std::remove(temporary.c_str());
-  refuse(path, why);
+  if (write(temporary.name().c_str(), rgb.data(), window.width(), window.height(), reason.data(), reason.size()) != 0)
+    refuse(path, reason.data());
+  temporary.commit();
 }
 
 /// 0 at `low`, 1 at `high`; NaN is 0, and so is everything else that compares with nothing.

@@ -108,7 +108,8 @@ std::vector<std::uint64_t> encode_part(const PlannedPart& plan, int zip_level, c
 }
 
 void write_planned(const std::string& path, std::vector<PlannedPart>& parts,
-                   const std::function<std::vector<std::uint64_t>(std::size_t, const ChunkTarget&)>& write_part) {
+                   const std::function<std::vector<std::uint64_t>(std::size_t, const ChunkTarget&)>& write_part,
+                   const std::function<void()>& check) {
   check_names(parts, path);
   OutputBytes file(path);
   const std::string header = header_bytes(parts);
@@ -118,6 +119,7 @@ void write_planned(const std::string& path, std::vector<PlannedPart>& parts,
     const std::vector<std::uint64_t> offsets = write_part(i, target);
     file.overwrite(parts[i].raw.table_offset, offsets.data(), offsets.size() * sizeof offsets[0]);
   }
+  if (check) check();
   file.commit();
 }
 

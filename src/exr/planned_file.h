@@ -30,8 +30,10 @@ std::vector<std::uint64_t> encode_part(const PlannedPart& plan, int zip_level, c
                                        Workers& workers);
 
 /// Writes headers and parts; the file appears only when complete. `write_part(i, target)` appends the chunks of part i
-/// and returns where they lie. Throws Failure(output).
+/// and returns where they lie. `check`, if any, is called before the file gets its name. Throws Failure(output), and
+/// what `check` throws.
 void write_planned(const std::string& path, std::vector<PlannedPart>& parts,
-                   const std::function<std::vector<std::uint64_t>(std::size_t, const ChunkTarget&)>& write_part);
+                   const std::function<std::vector<std::uint64_t>(std::size_t, const ChunkTarget&)>& write_part,
+                   const std::function<void()>& check = {});
 
 }  // namespace varve

@@ -87,10 +87,11 @@ void write_frame(const std::string& path, const FileHeader& source, std::span<co
   std::vector<PlannedPart> plans;
   for (const OutputPart& request : parts) plans.push_back(plan_part(original, request, path, parts.size() > 1));
   for (const auto& [name, text] : options.attributes) plans[0].raw.set(name, "string", text);
-  write_planned(path, plans, [&](std::size_t i, const ChunkTarget& target) {
+  const auto write_part = [&](std::size_t i, const ChunkTarget& target) {
     return parts[i].copy_chunks ? copy_chunks(original, parts[i].source_part, target)
                                 : encode_part(plans[i], options.zip_level, target, workers);
-  });
+  };
+  write_planned(path, plans, write_part, options.check);
 }
 
 }  // namespace varve

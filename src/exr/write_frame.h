@@ -1,6 +1,7 @@
 // One output file: parts and attributes of a source file, some channels replaced, some added.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,6 +32,7 @@ struct OutputPart {
 struct WriteOptions {
   int zip_level = 1;  ///< 1..9, libdeflate's scale; 1 costs a third less to encode than 4 for files 2 % larger
   std::vector<std::pair<std::string, std::string>> attributes;  ///< strings set in the first part (provenance)
+  std::function<void()> check = {};  ///< called when all is written, before the file gets its name; may throw
 };
 
 /// Writes `path` with every attribute of the source parts kept (standard, custom and opaque), parts in order.

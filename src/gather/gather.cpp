@@ -139,8 +139,8 @@ bool is_color(const Present& present, std::size_t companion) {
 }
 
 /// Everything of one pixel. Companions share the color's weights, and its gain where they are light, so that what added
-/// up to it still does.
-void write_pixel(Accumulated& out, const PixelContext& c, const PixelWeights& pixel, int x, int y) {
+/// up to it still does. Returns the luminance that was held back.
+double write_pixel(Accumulated& out, const PixelContext& c, const PixelWeights& pixel, int x, int y) {
   const PixelSums r = sum_pixel(c, pixel);
   out.history.color.at(x, y) = finite_color(r.color / r.all.sum);
   const double spread = r.all.squares / (r.all.sum * r.all.sum);
@@ -158,6 +158,7 @@ void write_pixel(Accumulated& out, const PixelContext& c, const PixelWeights& pi
       }
     out.history.companions[k].at(x, y) = finite_color(sum / r.all.sum);
   }
+  return r.removed / r.all.sum;
 }
 
 Accumulated make_output(const Present& present, const DiagnosticsWanted& wanted) {
@@ -232,7 +233,9 @@ Accumulated gather(std::span<const GatherSource> sources, std::size_t present, c
   std::vector<TileArrivals> arrivals(std::size_t(workers.count()));
   std::vector<PixelScratch> scratch(std::size_t(workers.count()));
   std::vector<std::size_t> restarted(std::size_t(workers.count()));
-  workers.for_each(std::size_t(grid.columns()) * std::size_t(grid.rows()), [&](std::size_t tile, int worker) {
+  // Tile by tile: the sum must not hang on which thread had which.
+  std::vector<double> removed(std::size_t(grid.columns()) * std::size_t(grid.rows()));
+  workers.for_each(removed.size(), [&](std::size_t tile, int worker) {
     TileArrivals& here = arrivals[std::size_t(worker)];
     collect_arrivals(grid, int(tile) % grid.columns(), int(tile) / grid.columns(), sources, present, fields, lists,
                      light, test, here);
@@ -246,12 +249,13 @@ Accumulated gather(std::span<const GatherSource> sources, std::size_t present, c
           ++restarted[std::size_t(worker)];
           continue;
         }
-        write_pixel(out, c, pixel, x, y);
+        removed[tile] += write_pixel(out, c, pixel, x, y);
       }
   });
   if (wanted.gather && present > 0)
     measure_round_trip(own.front(), sources[(present - 1) * samples], test, out.diagnostics.round_trip, workers);
   for (const std::size_t n : restarted) out.counts.restarted += n;
+  for (const double of_tile : removed) out.counts.removed += of_tile;
   return out;
 }
 

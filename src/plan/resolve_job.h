@@ -33,6 +33,8 @@ struct ResolveJob {
   std::string display, view;  ///< OpenColorIO display and view of the previews; empty: the config's default
   std::string report;         ///< written by the caller when all is done; here only checked; empty: none
   bool resume = false;
+  double wait_seconds = 0;          ///< how long to wait for requested frames that are not there yet; 0: not at all
+  std::string state_in, state_out;  ///< files of the history before the first and after the last frame; empty: none
   int threads = 0;  ///< 0: every processor
 };
 

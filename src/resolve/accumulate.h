@@ -91,6 +91,7 @@ struct AccumulateCounts {
   std::size_t clipped = 0;                          ///< pixels whose history was moved
   std::size_t vectors_bad = 0;                      ///< of the restarted: because of their vector
   std::array<std::size_t, kRejectBits> rejected{};  ///< pixels with each bit of the plane `reject`
+  double removed = 0;  ///< luminance that the firefly limit of the gather held back, summed over the pixels
 };
 
 struct Accumulated {

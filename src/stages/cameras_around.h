@@ -19,6 +19,9 @@ struct CamerasAround {
   std::optional<CameraChange> before, after;
 };
 
+/// How the camera of a subject of `here` becomes that of `there`, without the jitter; none where one is not known.
+std::optional<CameraChange> camera_change(const FrameCameras& here, const FrameCameras& there, std::size_t subject);
+
 /// One for each subject of the frame. `track` has the cameras that are known already and gets those of frames whose
 /// headers have to be read for it. Throws what read_frame_headers throws.
 std::vector<CamerasAround> cameras_around(const FrameHeaders& headers, const NeighborFrames& neighbors,

@@ -13,28 +13,16 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/version.h"
+#include "exr/temporary_file.h"
 #include "exr/write_frame.h"
 #include "plan/camera_plan.h"
 #include "plan/deep_plan.h"
 #include "plan/layers_plan.h"
 #include "plan/preset.h"
+#include "stages/state_file.h"
 
 namespace varve {
 namespace {
-
-/// True when a finished file of the same parameters and the same history stands under the output's name.
-bool is_complete(const std::string& path, const std::string& hash, const std::string& frames) {
-  try {
-    const FileHeader header = read_header(path);
-    const auto says = [&](const char* name, const std::string& text) {
-      const Attribute* found = header.parts.front().attribute(name);
-      return found && found->text == text;
-    };
-    return says("varve:hash", hash) && says("varve:frames", frames) && has_every_chunk(path);
-  } catch (const Failure&) {
-    return false;
-  }
-}
 
 /// First and last frame number that a frame reaches.
 std::pair<long long, long long> limits_of(int frame, const FrameReach& reach) {
@@ -53,40 +41,24 @@ std::vector<ScheduledFrame> frames_between(const ResolveJob& job, const Sequence
       if (frame >= first && frame <= last) all.insert(frame);
   }
   std::vector<ScheduledFrame> schedule;
-  for (const int frame : all) schedule.push_back({frame, requested.contains(frame), false, false, ""});
+  for (const int frame : all) schedule.emplace_back().frame = frame, schedule.back().write = requested.contains(frame);
   return schedule;
 }
 
 void mark_restarts(std::vector<ScheduledFrame>& schedule, const std::vector<int>& cuts,
-                   const std::map<int, std::string>& found) {
+                   const std::map<int, std::string>& found, bool goes_on) {
   for (std::size_t i = 0; i < schedule.size(); ++i) {
     ScheduledFrame& s = schedule[i];
-    if (i == 0)
+    if (i == 0 && !goes_on)
       s.restart_reason = "first frame";
     else if (std::find(cuts.begin(), cuts.end(), s.frame) != cuts.end())
       s.restart_reason = "cut";
     else if (const auto cut = found.find(s.frame); cut != found.end())
       s.restart_reason = "cut found: " + cut->second;
-    else if (s.frame != schedule[i - 1].frame + 1)
+    else if (i > 0 && s.frame != schedule[i - 1].frame + 1)
       s.restart_reason = "gap after frame " + std::to_string(schedule[i - 1].frame);
     s.restart = !s.restart_reason.empty();
   }
-}
-
-/// Keeps what unfinished frames need: each back to its restart.
-void drop_finished(std::vector<ScheduledFrame>& schedule) {
-  std::vector<ScheduledFrame> kept;
-  for (std::size_t begin = 0; begin < schedule.size();) {
-    std::size_t end = begin + 1, last_open = begin;
-    bool open = false;
-    while (end < schedule.size() && !schedule[end].restart) ++end;
-    for (std::size_t i = begin; i < end; ++i)
-      if (schedule[i].write && !schedule[i].complete) open = true, last_open = i;
-    for (std::size_t i = begin; i < end; ++i)
-      if ((open && i <= last_open) || schedule[i].complete) kept.push_back(schedule[i]);
-    begin = end;
-  }
-  schedule = std::move(kept);
 }
 
 /// What was asked for; a sidecar by its numbers, since they may change under its name.
@@ -133,20 +105,10 @@ std::vector<int> frames_in_reach(const ResolveJob& job, const SequenceInfo& info
   return frames;
 }
 
-std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash,
+std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const StateHead* before,
                                             const std::map<int, std::string>& found_cuts) {
-  const FrameReach reach = reach_of(job);
-  std::vector<ScheduledFrame> schedule = frames_between(job, info, reach);
-  mark_restarts(schedule, job.cuts, found_cuts);
-  if (job.resume) {
-    for (std::size_t i = 0; i < schedule.size(); ++i) {
-      ScheduledFrame& s = schedule[i];
-      const std::string frames = frames_used(schedule, i, reach);
-      s.complete = s.write && is_complete(job.output.path(s.frame), hash, frames) &&
-                   (!job.diagnostics || is_complete(job.diagnostics->path(s.frame), hash, frames));
-    }
-    if (reach.back_to_restart) drop_finished(schedule);
-  }
+  std::vector<ScheduledFrame> schedule = frames_between(job, info, reach_of(job));
+  mark_restarts(schedule, job.cuts, found_cuts, before != nullptr);
   return schedule;
 }
 
@@ -177,23 +139,18 @@ std::pair<std::size_t, std::size_t> span_around(const std::vector<ScheduledFrame
 
 NeighborFrames neighbors_of(const std::vector<ScheduledFrame>& schedule, std::size_t index) {
   NeighborFrames neighbors;
-  if (index > 0 && !schedule[index].restart) neighbors.before = schedule[index - 1].frame;
+  // A history that goes on from a state file goes on from the frame before.
+  if (!schedule[index].restart) neighbors.before = index > 0 ? schedule[index - 1].frame : schedule[0].frame - 1;
   if (index + 1 < schedule.size() && !schedule[index + 1].restart) neighbors.after = schedule[index + 1].frame;
   return neighbors;
 }
 
-std::string frames_used(const std::vector<ScheduledFrame>& schedule, std::size_t index, const FrameReach& reach) {
-  const auto [first, last] = span_around(schedule, index, reach);
-  std::vector<int> frames;
-  for (std::size_t i = first; i <= last; ++i) frames.push_back(schedule[i].frame);
-  return format_frame_list(frames);
-}
-
-std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info) {
+std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info, const StateHead* before) {
   std::string text = parameters_text(job.parameters);
   // Where the history begins decides what recursion gives; a finite window knows nothing of other frames.
   if (reach_of(job).back_to_restart)
-    text += " first=" + std::to_string(info.frames.front()) + " preroll=" + std::to_string(job.preroll);
+    text += " first=" + std::to_string(before ? before->first : info.frames.front()) +
+            " preroll=" + std::to_string(before ? before->preroll : job.preroll);
   std::vector<int> cuts = job.cuts;
   std::sort(cuts.begin(), cuts.end());
   if (!cuts.empty()) text += " cuts=" + format_frame_list(cuts);
@@ -303,11 +260,25 @@ void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& sch
   check(job.output, "--output", outputs);
   if (job.diagnostics) check(*job.diagnostics, "--diagnostics", outputs);
   if (!job.preview_folder.empty()) check_writable(job.preview_folder + "/color.png");
-  if (job.report.empty()) return;
-  if (inputs.contains(canonical(job.report)) || outputs.contains(canonical(job.report)))
-    throw Failure(ExitCode::usage,
-                  "the report '" + job.report + "' is one of the frames read or written; give --report another name");
-  check_writable(job.report);
+  const auto check_file = [&](const std::string& path, const std::string& what, const char* option) {
+    if (path.empty()) return;
+    if (inputs.contains(canonical(path)) || outputs.contains(canonical(path)))
+      throw Failure(ExitCode::usage, "the " + what + " '" + path + "' is one of the frames read or written; give " +
+                                         option + " another name");
+    check_writable(path);
+    outputs.insert(canonical(path));
+  };
+  check_file(job.report, "report", "--report");
+  check_file(job.state_out, "state file", "--state-out");
+}
+
+std::vector<std::string> output_folders(const ResolveJob& job) {
+  std::set<std::string> folders = {folder_of(job.output.text())};
+  if (job.diagnostics) folders.insert(folder_of(job.diagnostics->text()));
+  if (!job.preview_folder.empty()) folders.insert(job.preview_folder);
+  for (const std::string& file : {job.report, job.state_out})
+    if (!file.empty()) folders.insert(folder_of(file));
+  return {folders.begin(), folders.end()};
 }
 
 }  // namespace varve

@@ -12,6 +12,8 @@
 
 namespace varve {
 
+struct StateHead;  // stages/state_file.h
+
 /// How far the frames reach that one output is made from, besides its own.
 struct FrameReach {
   int before = 0, after = 0;     ///< frames, not across restarts
@@ -28,17 +30,19 @@ struct ScheduledFrame {
   int frame = 0;
   bool write = false;
   bool complete = false;       ///< a finished output of the same parameters is there (--resume)
+  bool leaves_state = false;   ///< --state-out wants what is known after it
   bool restart = false;        ///< history starts anew here: first frame, cut, or gap before it
   std::string restart_reason;  ///< "first frame", "cut", "gap after frame 12"
 };
 
 /// Frames in order: requested ones are written, existing ones between them and within reach around them are only made
-/// use of. `found_cuts` begin shots besides those of the job; with the evidence. With --resume, frames that no
-/// unfinished frame depends on are left out.
-std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash,
+/// use of. `found_cuts` begin shots besides those of the job; with the evidence. `before`: the history of the first one
+/// goes on from there.
+std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info,
+                                            const StateHead* before = nullptr,
                                             const std::map<int, std::string>& found_cuts = {});
 
-/// The same frames, whether they are done or not: those that cuts are to be looked for in.
+/// The same frames: those that cuts are to be looked for in.
 std::vector<int> frames_in_reach(const ResolveJob& job, const SequenceInfo& info);
 
 /// The frames that the vectors of schedule[index] lead to.
@@ -48,12 +52,9 @@ NeighborFrames neighbors_of(const std::vector<ScheduledFrame>& schedule, std::si
 std::pair<std::size_t, std::size_t> span_around(const std::vector<ScheduledFrame>& schedule, std::size_t index,
                                                 const FrameReach& reach);
 
-/// The same frames as a frame list.
-std::string frames_used(const std::vector<ScheduledFrame>& schedule, std::size_t index, const FrameReach& reach);
-
 /// Every choice that decides the pixels, as text. Names of files come without their folders, so that equal work gives
-/// equal bytes wherever it is done.
-std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info);
+/// equal bytes wherever it is done. `before`: the history began where that run began it.
+std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info, const StateHead* before = nullptr);
 
 /// What decides the pixels from beside the frames: names of the role files, contents of the
 /// color config (not of the tables that the config refers to). For the hash only.
@@ -70,5 +71,8 @@ void check_roles(const ResolveJob& job, const SequenceInfo& info);
 
 /// Outputs differ from inputs and from each other, folders can be written to. Throws Failure.
 void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& schedule);
+
+/// Folders that a job writes into; "." for the current one.
+std::vector<std::string> output_folders(const ResolveJob& job);
 
 }  // namespace varve

@@ -5,11 +5,13 @@
 
 #include "base/error.h"
 #include "stages/check_jitter.h"
+#include "stages/continue_history.h"
 
 namespace varve {
 
 Setup set_up(const SettledLayers& ordered) {
   const ResolveJob& job = ordered.job;
+  check_state_options(job);
   JitterSource jitter = parse_jitter_source(job.jitter);
   if (jitter.kind == JitterSource::Kind::pixels) {
     Workers workers(job.threads);
@@ -35,11 +37,18 @@ Setup set_up(const SettledLayers& ordered) {
           planned_aovs(job.request, job.parameters.accumulator),
           {},
           {},
+          {},
           {}};
   s.gather.filter = job.parameters.recursive.sample_filter;
   s.gather.return_tolerance = job.parameters.two_sided.return_tolerance;
-  s.parameters = describe_parameters(job, s.info);
+  if (!job.state_in.empty()) s.before = read_state_head(job.state_in);
+  s.parameters = describe_parameters(job, s.info, s.before ? &*s.before : nullptr);
   s.hash = hash_of(s.parameters + describe_side_inputs(job));
+  if (s.before) {
+    check_continues(s);
+    s.plan.passes.push_back(
+        {"state", true, "the history goes on from frame " + std::to_string(s.before->last()) + " of an earlier run"});
+  }
   // Around the resolve: from the input's space to scene-linear, and from there to the output's.
   if (!job.from_space.empty()) s.into_working_space = ColorConversion::between(job.ocio_config, job.from_space, "");
   const std::string& to = job.to_space.empty() ? job.from_space : job.to_space;

@@ -9,6 +9,7 @@
 #include "plan/plan.h"
 #include "stages/preflight.h"
 #include "stages/settle_layers.h"
+#include "stages/state_file.h"
 
 namespace varve {
 
@@ -25,6 +26,7 @@ struct Setup {
   std::vector<const Aov*> aovs;  ///< asked for
   std::optional<ColorConversion> into_working_space, out_of_working_space;
   std::optional<DisplayTransform> display;
+  std::optional<StateHead> before;  ///< of --state-in
 };
 
 /// Headers, plan and color transforms; pixels only where the jitter is measured in them. `ordered` must outlive the

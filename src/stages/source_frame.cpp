@@ -27,11 +27,15 @@ void use_cameras(SourceFrame& source, std::vector<Present>& presents, const Sour
 }  // namespace
 
 CamerasAround cameras_of(const SourceFrame& source, std::size_t present) {
+  return cameras_of(source.headers, source.cameras, present);
+}
+
+CamerasAround cameras_of(const FrameHeaders& headers, const std::vector<CamerasAround>& cameras, std::size_t present) {
   std::size_t next = 0;
-  for (const ColorOutput& output : source.headers.outputs) {
+  for (const ColorOutput& output : headers.outputs) {
     const std::size_t place = output.after ? present - next : 0, count = output.after ? output.inputs.size() : 1;
-    if (present < next + count && place < output.inputs.size() && output.inputs[place] < source.cameras.size())
-      return source.cameras[output.inputs[place]];
+    if (present < next + count && place < output.inputs.size() && output.inputs[place] < cameras.size())
+      return cameras[output.inputs[place]];
     if (present < next + count) return {};
     next += count;
   }

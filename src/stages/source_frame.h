@@ -41,6 +41,8 @@ auto in_frame(int frame, Work work) {
 /// The cameras of one of source.presents: those of its subject, or of the first of several that were combined; none
 /// where they are not used.
 CamerasAround cameras_of(const SourceFrame& source, std::size_t present);
+/// The same of other cameras than source.cameras, one for each of headers.subjects.
+CamerasAround cameras_of(const FrameHeaders& headers, const std::vector<CamerasAround>& cameras, std::size_t present);
 
 /// What every frame of a job is read by.
 struct SourceOptions {

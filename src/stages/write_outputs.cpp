@@ -9,12 +9,14 @@ namespace varve {
 
 namespace {
 
-WriteOptions write_options(const Setup& s, const std::string& frames_used) {
+WriteOptions write_options(const Setup& s, const Provenance& provenance, const std::function<void()>& check) {
   return {s.job.zip_level,
           {{"varve:version", version()},
            {"varve:parameters", s.parameters},
            {"varve:hash", s.hash},
-           {"varve:frames", frames_used}}};
+           {"varve:frames", provenance.frames},
+           {"varve:inputs", provenance.inputs}},
+          check};
 }
 
 }  // namespace
@@ -30,10 +32,10 @@ FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& worker
 }
 
 std::size_t write_outputs(const Setup& s, const std::string& path, const FrameHeaders& headers, const FileSet& pixels,
-                          const std::vector<ResolvedSubject>& resolved, const std::string& frames_used,
-                          Workers& workers) {
+                          const std::vector<ResolvedSubject>& resolved, const Provenance& provenance,
+                          const std::function<void()>& check, Workers& workers) {
   const FileHeader &source = headers.files.front(), &stored = files_on_disk(headers).front();
-  const WriteOptions options = write_options(s, frames_used);
+  const WriteOptions options = write_options(s, provenance, check);
   const std::vector<const Aov*> none;
   const bool apart = s.job.diagnostics.has_value();
   FileOutput color =

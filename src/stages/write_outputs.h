@@ -1,6 +1,9 @@
 // The files of one resolved frame.
 #pragma once
 
+#include <functional>
+
+#include "stages/provenance.h"
 #include "stages/set_up.h"
 #include "stages/source_frame.h"
 #include "stages/write_resolved.h"
@@ -11,9 +14,10 @@ namespace varve {
 FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& workers);
 
 /// Writes the frame under `path`, and its diagnostics and pictures where they go into files of their own. `pixels` are
-/// those of read_beside(). Returns how many values had to be held at the ends of half. Throws what write_frame throws.
+/// those of read_beside(). `check` is called before a file gets its name, and may throw. Returns how many values had to
+/// be held at the ends of half. Throws what write_frame throws.
 std::size_t write_outputs(const Setup& s, const std::string& path, const FrameHeaders& headers, const FileSet& pixels,
-                          const std::vector<ResolvedSubject>& resolved, const std::string& frames_used,
-                          Workers& workers);
+                          const std::vector<ResolvedSubject>& resolved, const Provenance& provenance,
+                          const std::function<void()>& check, Workers& workers);
 
 }  // namespace varve
