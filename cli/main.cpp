@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/printable.h"
 #include "commands.h"
+#include "signals.h"
 
 namespace {
 
@@ -50,6 +51,9 @@ int flush_output(int code) {
 
 int main(int argc, char** argv) {
   keep_memory();
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they report faults themselves
+  varve::cli::watch_faults();
+#endif
   try {
     return flush_output(varve::cli::run(std::vector<std::string>(argv + (argc > 0), argv + argc)));
   } catch (const varve::Failure& failure) {

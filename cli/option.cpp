@@ -86,7 +86,7 @@ Parsed Reader::read() {
   }
   if (parsed_.help) return parsed_;
   // A preset lies under the options that were given by name, whatever the order on the line.
-  std::ranges::stable_partition(given_, [](const Given& given) { return given.option->first; });
+  std::stable_partition(given_.begin(), given_.end(), [](const Given& given) { return given.option->first; });
   for (const Given& given : given_) {
     set(given.option->value, dashed(*given.option), given.value);
     parsed_.settings.given.emplace_back(

@@ -10,6 +10,9 @@
 #include <cstdint>
 #include <cstring>
 
+#include "base/error.h"
+#include "base/foreign_code.h"
+
 namespace varve::cli {
 namespace {
 
@@ -54,7 +57,30 @@ extern "C" void on_stop(int signal) {
   stop_requested = signal;
 }
 
+void say(const char* text) {
+  if (write(STDERR_FILENO, text, std::strlen(text)) < 0) return;  // nobody is left to be told
+}
+
+extern "C" void on_fault(int signal) {
+  if (const char* sentence = foreign_sentence()) {
+    say("\nvarve: error: ");
+    say(sentence);
+    say("\n");
+    for (std::size_t i = 0; i < watched_count; ++i) remove_temporaries(watched_folders[i]);
+    _exit(int(ExitCode::input));
+  }
+  std::signal(signal, SIG_DFL);
+  raise(signal);
+}
+
 }  // namespace
+
+void watch_faults() {
+  struct sigaction fault = {};
+  fault.sa_handler = on_fault;
+  sigemptyset(&fault.sa_mask);
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) sigaction(signal, &fault, nullptr);
+}
 
 void watch_signals(std::span<const std::string> folders) {
   std::strncpy(process_mark.data(), ("-" + std::to_string(getpid()) + "-").c_str(), process_mark.size() - 1);

@@ -48,7 +48,7 @@ std::string reason(const std::exception& failure) {
 std::string shortlist(std::vector<std::string> names, const std::string& asked) {
   constexpr std::size_t kMost = 12;
   const std::string wanted = lowered(asked);
-  std::ranges::stable_partition(names, [&](const std::string& name) {
+  std::stable_partition(names.begin(), names.end(), [&](const std::string& name) {
     const std::string low = lowered(name);
     return !wanted.empty() && (low.find(wanted) != std::string::npos || wanted.find(low) != std::string::npos);
   });

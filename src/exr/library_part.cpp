@@ -11,6 +11,8 @@
 #include <exception>
 
 #include "base/error.h"
+#include "base/foreign_code.h"
+#include "base/printable.h"
 #include "exr/container.h"
 #include "exr/library_slice.h"
 
@@ -51,6 +53,10 @@ std::string library_reason(const char* what) {
 
 void read_part_by_library(const FileHeader& header, int part, std::vector<RawPlane>& planes, int threads) {
   const Part& wanted = header.parts[std::size_t(part)];
+  // The library checks what it reads, but its releases keep on fixing bytes that ended it.
+  const InForeignCode decoding(printable(part_in_words(header, part)) + " is damaged in its " +
+                               name_of(wanted.compression) +
+                               " pixels, so that the OpenEXR library broke down over them; render or copy it again");
   try {
     Imf::setGlobalThreadCount(threads);
     Imf::MultiPartInputFile file(header.path.c_str(), threads);

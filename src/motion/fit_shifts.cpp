@@ -125,7 +125,8 @@ std::vector<ShiftModel> fit_shifts(const VectorCells& cells, const std::vector<F
   std::map<std::uint32_t, std::vector<std::size_t>> surfaces;
   for (std::size_t i = 0; i < found.size(); ++i)
     if (found[i].found) surfaces[cells.cells[i].label].push_back(i);
-  for (const auto& [label, members] : surfaces) {
+  for (const auto& surface : surfaces) {
+    const std::vector<std::size_t>& members = surface.second;
     std::vector<Witness> all;
     for (const std::size_t i : members) all.push_back({&cells.cells[i], &found[i], double(cells.cells[i].pixels)});
     const ShiftModel whole = fit(cells, cells.cells[members[members.size() / 2]], all);

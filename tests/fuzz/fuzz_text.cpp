@@ -171,7 +171,7 @@ int fuzz_camera(const std::uint8_t* data, std::size_t size) {
     const CameraSource source = parse_camera_source(path);
     Part part;
     part.display_window = part.data_window = {0, 0, 64, 36};
-    for (const auto& [frame, row] : source.table) taken_or_refused([&] { find_camera(source, part, frame); });
+    for (const auto& row : source.table) taken_or_refused([&] { find_camera(source, part, row.first); });
   });
   return 0;
 }

@@ -352,12 +352,12 @@ TEST(Subjects, SubsampledColorIsRefusedAndSubsampledDataIsTold) {
     return std::vector<FileHeader>{file_of({part})};
   };
   // Luminance and chroma; one color of three; all of them. What is whole is never resolved alone.
-  for (const auto& [files, culprit] : {std::pair{with_half({"Y", "RY", "BY", "A"}, {"RY", "BY"}), "RY"},
-                                       std::pair{with_half({"R", "G", "B"}, {"B"}), "channel B"},
-                                       std::pair{with_half({"R", "G", "B"}, {"R", "G", "B"}), "channel R"}}) {
-    const std::string message = message_of([&] { find(files); });
+  for (const auto& tried : {std::pair{with_half({"Y", "RY", "BY", "A"}, {"RY", "BY"}), "RY"},
+                            std::pair{with_half({"R", "G", "B"}, {"B"}), "channel B"},
+                            std::pair{with_half({"R", "G", "B"}, {"R", "G", "B"}), "channel R"}}) {
+    const std::string message = message_of([&] { find(tried.first); });
     EXPECT_NE(message.find("subsampled"), std::string::npos) << message;
-    EXPECT_NE(message.find(culprit), std::string::npos) << message;
+    EXPECT_NE(message.find(tried.second), std::string::npos) << message;
   }
   // Other layers, and what is only passed through, may be as they like.
   EXPECT_EQ(find(with_half({"R", "G", "B", "fog.R", "fog.G", "fog.B"}, {"fog.R", "fog.G", "fog.B"})).size(), 1u);
