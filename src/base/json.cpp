@@ -8,6 +8,10 @@
 namespace varve {
 namespace {
 
+// A value takes fifty times the bytes of the shortest text for one: 4 M of them are some 450 MiB, and the cameras of a
+// hundred thousand frames.
+constexpr std::size_t kMostValues = std::size_t(1) << 22;
+
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 void append_utf8(std::string& out, std::uint32_t code) {
@@ -48,7 +52,7 @@ class Reader {
 
   bool value(JsonValue& out, int depth) {
     blanks();
-    if (rest_.empty()) return false;
+    if (rest_.empty() || ++values_ > kMostValues) return false;
     switch (rest_[0]) {
       case '{':
         return depth > 0 && object(out, depth - 1);
@@ -190,6 +194,7 @@ class Reader {
   }
 
   std::string_view rest_;
+  std::size_t values_ = 0;
 };
 
 // Length of the well-formed UTF-8 sequence at the start of `text`; 0 if there is none (RFC 3629).

@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 #include <stdexcept>
+#include <unordered_map>
 #include <utility>
 
 #include "base/error.h"
@@ -70,10 +71,16 @@ class HeaderCursor {
 
 // Attributes up to the empty name that ends a header; false when the header is empty.
 bool read_attributes(HeaderCursor& cursor, RawPart& part) {
+  std::unordered_map<std::string, std::size_t> places;  // a search for each name would take minutes over large headers
   for (std::string name = cursor.name(); !name.empty(); name = cursor.name()) {
     const std::string type = cursor.name();
     const std::uint32_t size = cursor.number();
-    part.set(name, type, cursor.bytes(size));
+    RawAttribute attribute{name, type, cursor.bytes(size)};
+    const auto [place, fresh] = places.try_emplace(name, part.attributes.size());
+    if (fresh)
+      part.attributes.push_back(std::move(attribute));
+    else
+      part.attributes[place->second] = std::move(attribute);
     if (part.attributes.size() > kAttributes) cursor.damaged();
   }
   return !part.attributes.empty();

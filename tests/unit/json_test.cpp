@@ -101,5 +101,13 @@ TEST(Json, NumbersReadBackExactly) {
   EXPECT_EQ(json_number(-std::numeric_limits<double>::infinity()), "null");
 }
 
+TEST(Json, HoldsNoMoreValuesThanMemoryCanBear) {
+  std::string text = "[0";
+  for (int i = 1; i < 1 << 22; ++i) text += ",0";
+  EXPECT_FALSE(parse_json(text + "]"));  // the array itself is one too many
+  text.resize(2 * 100000);
+  EXPECT_TRUE(parse_json(text + "]"));
+}
+
 }  // namespace
 }  // namespace varve
