@@ -11,6 +11,7 @@
 #include "stages/continue_history.h"
 #include "stages/follow_motion.h"
 #include "stages/frame_window.h"
+#include "stages/half_vectors.h"
 #include "stages/preflight.h"
 #include "stages/provenance.h"
 #include "stages/resume.h"
@@ -109,6 +110,16 @@ void tell_of_cameras(const SourceFrame& source, std::set<std::string>& told, con
   events.warning("frame " + std::to_string(source.headers.frame) + ": " + remark);
 }
 
+/// Once a run.
+void tell_of_half_vectors(const SourceFrame& source, std::set<std::string>& told, const ResolveEvents& events,
+                          Workers& workers) {
+  if (!events.warning || told.contains("half")) return;
+  const std::string remark = half_vectors_remark(source, workers);
+  if (remark.empty()) return;
+  told.insert("half");
+  events.warning("frame " + std::to_string(source.headers.frame) + ": " + remark);
+}
+
 }  // namespace
 
 Plan plan_sequence(const ResolveJob& asked, SequenceInfo& info) {
@@ -167,6 +178,7 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
       return read_source_frame(source_options, schedule[index].frame, neighbors_of(schedule, index), workers);
     });
     if (before && index == 0) continue_cameras(source, before->cameras, states);
+    tell_of_half_vectors(source, told, events, workers);
     for (std::size_t k = 0; recursive && k < source.presents.size(); ++k) {
       if (schedule[index].restart) states[k].forward = {};
       source.repairs.push_back(follow_motion(source.presents[k], cameras_of(source, k), job.parameters.motion,

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "base/held_float.h"
 #include "base/reject.h"
 #include "gather/arrivals.h"
 #include "gather/gather_pixel.h"
@@ -101,13 +103,6 @@ PixelSums sum_pixel(const PixelContext& c, const PixelWeights& pixel) {
   return r;
 }
 
-glm::vec4 finite_color(const glm::dvec4& color) {
-  const double limit = double(std::numeric_limits<float>::max());
-  glm::vec4 out;
-  for (int k = 0; k < 4; ++k) out[k] = float(std::clamp(color[k], -limit, limit));
-  return out;
-}
-
 void write_diagnostics(AccumulateDiagnostics& d, const PixelContext& c, const PixelSums& r, const PixelWeights& pixel,
                        int x, int y) {
   if (!d.weight.empty()) d.weight.at(x, y) = float(1 - r.present.sum / r.all.sum);
@@ -142,7 +137,7 @@ bool is_color(const Present& present, std::size_t companion) {
 /// up to it still does. Returns the luminance that was held back.
 double write_pixel(Accumulated& out, const PixelContext& c, const PixelWeights& pixel, int x, int y) {
   const PixelSums r = sum_pixel(c, pixel);
-  out.history.color.at(x, y) = finite_color(r.color / r.all.sum);
+  out.history.color.at(x, y) = held_color(r.color / r.all.sum);
   const double spread = r.all.squares / (r.all.sum * r.all.sum);
   out.history.total.at(x, y) = float(std::min(1 / spread, 1e6));
   out.history.spread.at(x, y) = float(spread);
@@ -156,7 +151,7 @@ double write_pixel(Accumulated& out, const PixelContext& c, const PixelWeights& 
         const float gain = a->gain * pixel.scale[i];
         sum += (is_color(present, k) ? lit(sample, gain) : glm::dvec4(sample)) * double(pixel.weights[i]);
       }
-    out.history.companions[k].at(x, y) = finite_color(sum / r.all.sum);
+    out.history.companions[k].at(x, y) = held_color(sum / r.all.sum);
   }
   return r.removed / r.all.sum;
 }
@@ -184,7 +179,7 @@ void keep_present(Accumulated& out, std::span<const GatherSource> own, int x, in
   const auto mean = [&](const auto& plane) {
     glm::dvec4 sum(0);
     for (const GatherSource& sample : own) sum += glm::dvec4(plane(*sample.present).at(x, y));
-    return finite_color(sum / double(own.size()));
+    return held_color(sum / double(own.size()));
   };
   out.history.color.at(x, y) = mean([](const Present& p) -> const Plane<glm::vec4>& { return p.color; });
   for (std::size_t k = 0; k < out.history.companions.size(); ++k)

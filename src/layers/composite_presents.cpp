@@ -2,6 +2,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/held_float.h"
 #include "layers/composite.h"
 #include "layers/over.h"
 #include "layers/transmittance.h"
@@ -117,7 +118,7 @@ void composite_pixel(Layers layers, LayerRule rule, Present& out, int x, int y) 
     ++touched;
   }
   const glm::dvec4 color = over.color();
-  out.color.at(x, y) = glm::vec4(color);
+  out.color.at(x, y) = held_color(color);
   out.valid.at(x, y) = valid ? 1.0f : 0.0f;
   const Winner winner = contest.winner(luminance(over.transmittance()));
   if (!last)

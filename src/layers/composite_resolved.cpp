@@ -1,6 +1,7 @@
 #include <array>
 #include <utility>
 
+#include "base/held_float.h"
 #include "layers/composite.h"
 #include "layers/over.h"
 #include "layers/transmittance.h"
@@ -49,7 +50,7 @@ Plane<glm::vec4> composite_colors(std::span<const LayerColor> layers, const Wind
         }
         over.add({double(c.x), double(c.y), double(c.z)}, t);
       }
-      out.at(x, y) = glm::vec4(over.color());
+      out.at(x, y) = held_color(over.color());
     }
   });
   return out;

@@ -10,6 +10,7 @@
 #include "resolve/bspline.h"
 #include "resolve/empty_spans.h"
 #include "resolve/rectify_shapes.h"
+#include "resolve/remainder.h"
 #include "resolve/row_passes.h"
 #include "resolve/sample_weights.h"
 
@@ -206,6 +207,7 @@ struct RowSteps {
   const RowPass* fetched = nullptr;
   const RowPass* rectified = nullptr;  ///< stands in place of the blend, and of what weighs it
   const CompanionPass* companions = nullptr;
+  Plane<glm::vec4>* remainder = nullptr;
 };
 
 /// Rows through the steps; what the row kernel has no code to rectify goes through the shapes instead.
@@ -251,7 +253,7 @@ class RowRunner {
     const RowPassView& p = steps_.passes;
     const bool reads_itself = v_.filter != HistoryFilter::cubic && spline_degree(v_.filter) == 0;
     const bool kernel_alone = !shapes_ && !steps_.fetched && !steps_.rectified && !steps_.companions &&
-                              !p.tests_surfaces && !p.tests_vectors && !p.weighs && !p.finishes;
+                              !steps_.remainder && !p.tests_surfaces && !p.tests_vectors && !p.weighs && !p.finishes;
     return reads_itself && kernel_alone && !v_.depth.origin && v_.history_width > 0 && !v_.leave_present_out;
   }
 
@@ -295,6 +297,7 @@ class RowRunner {
       if (passes.weighs) weigh_present(passes, y, rows, extra);
       kernel_.blend_present(v_, y, rows, scratch.counts);
       if (passes.finishes) finish_row(passes, y, rows, extra);
+      if (steps_.remainder) blend_remainder(passes, y, rows, extra, *steps_.remainder);
       if (steps_.companions) accumulate_companions(v_, y, rows, passes, *steps_.companions);
     }
     count_bits(rows.reject, v_.width, scratch.rejected);
@@ -361,10 +364,13 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
                     : unjitter_bilinear(like, *jitter, workers);
     };
   const CompanionPass companions = view_companions(v, present, previous, reconstruct, out.history);
-  out.counts = run_rows(v,
-                        {shape_rules(rectify, recursive, made), row_passes_for(v, present, previous, recursive),
-                         nullptr, nullptr, companions.empty() ? nullptr : &companions},
-                        isa, workers);
+  // A first frame is what it is: there is nothing to round.
+  if (keeps_remainder(recursive) && !previous.empty()) out.history.remainder = Plane<glm::vec4>(present.color.window());
+  out.counts = run_rows(
+      v,
+      {shape_rules(rectify, recursive, made), row_passes_for(v, present, previous, recursive), nullptr, nullptr,
+       companions.empty() ? nullptr : &companions, out.history.remainder.empty() ? nullptr : &out.history.remainder},
+      isa, workers);
   if (!wanted.weight) out.diagnostics.weight = {};
   remember_surfaces(out.history, present, recursive);
   return out;

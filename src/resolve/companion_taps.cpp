@@ -92,7 +92,9 @@ CompanionTaps find_taps(const AccumulateView& v, int x, int y, unsigned standing
   const float* depth = v.depth.origin ? v.depth.origin + y * v.depth.stride + x : nullptr;
   const bool inside = t.x >= 1 && t.y >= 1 && t.x + 2 < v.history_width && t.y + 2 < v.history_height;
   bool plain = inside;
-  for (int j = -1; plain && j <= 2; ++j) plain = v.history_rows_valid[t.y + j] != 0;
+  for (int j = -1; plain && j <= 2; ++j)
+    for (int i = -1; plain && v.history_rows_valid[t.y + j] == 0 && i <= 2; ++i)
+      plain = v.history_total.origin[(t.y + j) * v.history_total.stride + t.x + i] > 0;
   const bool all_passed = test_inner(v, depth, fx, fy, standing, t);
   if (!plain || !all_passed || v.filter == HistoryFilter::bilinear) return t;
   t.nearest_x = t.x + (fx >= 0.5);

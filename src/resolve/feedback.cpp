@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "resolve/remainder.h"
 #include "resolve/row_passes.h"
 
 namespace varve {
@@ -89,7 +90,7 @@ RowPassView row_passes_for(const AccumulateView& frame, const Present& present, 
   const bool tests = v.tests_surfaces || v.tests_vectors;
   v.weighs = tests || p.weight.feedback != Feedback::fixed || p.weight.speed_alpha > 0 || p.weight.anti_flicker > 0 ||
              (p.weight.reactive > 0 && !present.reactive.empty()) || !present.responsive.empty() ||
-             p.weight.weighing != Weighing::none;
+             p.weight.weighing != Weighing::none || keeps_remainder(p);
   v.finishes = p.weight.weighing == Weighing::logarithm || p.reject.on_reject == OnReject::blur;
   return v;
 }

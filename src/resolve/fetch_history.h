@@ -53,6 +53,14 @@ VARVE_INLINE bool same_depth(float a, float b, double tolerance) {
   return r;
 }
 
+/// Whether every pixel that a filter of this reach reads has data; all lie inside the history.
+[[gnu::noinline]] static bool have_data(const AccumulateView& v, Axis ax, Axis ay, int reach) {
+  for (int y = ay.base - reach; y <= ay.base + reach + 1; ++y)
+    for (int x = ax.base - reach; x <= ax.base + reach + 1; ++x)
+      if (!(v.history_total.origin[y * v.history_total.stride + x] > 0)) return false;
+  return true;
+}
+
 /// Fetches one pixel's history; total 0 and a reject bit where it has none.
 template <HistoryFilter filter>
 VARVE_INLINE void fetch_pixel(const AccumulateView& v, int x, int y, const RowScratch& out) {
@@ -73,8 +81,13 @@ VARVE_INLINE void fetch_pixel(const AccumulateView& v, int x, int y, const RowSc
   const float* depth = v.depth.origin ? v.depth.origin + y * v.depth.stride + x : nullptr;
   constexpr int r = reach(filter);
   bool plain = ax.base >= r && ay.base >= r && ax.base + r + 1 < v.history_width && ay.base + r + 1 < v.history_height;
-  const std::uint8_t* valid = v.history_rows_valid + ay.base;
-  for (int j = -r; j <= r + 1; ++j) plain = plain && valid[j];
+  if (plain) {
+    const std::uint8_t* valid = v.history_rows_valid + ay.base;
+    bool rows = true;
+    for (int j = -r; j <= r + 1; ++j) rows = rows && valid[j];
+    // A pixel without data somewhere in the row is no matter of those that do not read it.
+    plain = rows || have_data(v, ax, ay, r);
+  }
 
   if (!plain || depth) {
     const TestedTaps tested = test_taps(v, ax, ay, depth);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/held_float.h"
+
 namespace varve {
 namespace {
 
@@ -107,7 +109,7 @@ WeighedPresent weigh_samples(const Present& present, SampleFilter filter, glm::d
       color = present.color.at(x, y);
       out.sample_weight.at(x, y) = s.weight > 0 ? float(s.weight) : 0.0f;
       if (s.weight > 0)
-        for (int k = 0; k < 4; ++k) color[k] = float(s.color[k] / s.weight);
+        for (int k = 0; k < 4; ++k) color[k] = held_float(s.color[k] / s.weight);
     }
   });
   return out;

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
+#include "base/held_float.h"
 #include "base/reject.h"
 #include "resolve/accumulate_row.h"
 
@@ -17,12 +18,6 @@ namespace {
 /// A row of pixels as four doubles each, read from the floats of the kernel.
 glm::dvec4 color_at(const float* row, int x) {
   return {double(row[4 * x]), double(row[4 * x + 1]), double(row[4 * x + 2]), double(row[4 * x + 3])};
-}
-
-float held_in_float(double v) { return float(std::clamp(v, -3.4028234663852886e38, 3.4028234663852886e38)); }
-
-glm::vec4 narrow(const glm::dvec4& c) {
-  return {held_in_float(c.r), held_in_float(c.g), held_in_float(c.b), held_in_float(c.a)};
 }
 
 /// Variance of one sample, summed over red, green and blue: that of the 3x3 around a pixel. Not below a millionth of
@@ -84,7 +79,7 @@ void blend_into_state(const AccumulateView& v, int y, const RowScratch& s, Histo
     }
     const double kept =
         v.alpha_rule == AlphaRule::fixed ? (1 - v.alpha) * (before + w) : std::min(before + w, (1 - v.alpha) / v.alpha);
-    color[x] = narrow(blended);
+    color[x] = held_color(blended);
     total[x] = float(std::min(kept, 1e6));  // a count beyond this changes nothing that a float can hold
     spread[x] = before > 0 ? float(double(s.spread[x]) * (1 - a) * (1 - a) + a * a) : w > 0 ? 1.0f : 0.0f;
     all_valid = all_valid && total[x] > 0;
@@ -96,7 +91,7 @@ void keep_strict(const AccumulateView& v, int y, const RowScratch& s, StrictSide
   const Window& window = strict.color.window();
   for (int x = 0; x < v.width; ++x) {
     const bool speaks = s.total[x] > 0;
-    strict.color.row(window.y0 + y)[x] = speaks ? narrow(color_at(s.history, x)) : glm::vec4(0.0f);
+    strict.color.row(window.y0 + y)[x] = speaks ? held_color(color_at(s.history, x)) : glm::vec4(0.0f);
     strict.total.row(window.y0 + y)[x] = speaks ? s.total[x] : 0.0f;
     strict.spread.row(window.y0 + y)[x] = speaks ? s.spread[x] : 0.0f;
     if (!strict.reject.empty()) strict.reject.row(window.y0 + y)[x] = s.reject[x];
@@ -134,7 +129,7 @@ void merge_row(const AccumulateView& v, int y, const RowScratch& s, const Strict
                      double(other.spread.row(row)[x])};
     const double w = weight_of_sample(v, x, y);
     const Side merged = merge(here, there, color_at(v.color.origin + y * v.color.stride, x), w);
-    out.history.color.row(row)[x] = narrow(merged.color);
+    out.history.color.row(row)[x] = held_color(merged.color);
     out.history.total.row(row)[x] = float(merged.total);
     out.history.spread.row(row)[x] = float(merged.spread);
     if (!d.weight.empty()) d.weight.row(row)[x] = merged.total > 0 ? float(1 - w / merged.total) : 0.0f;
@@ -175,7 +170,7 @@ AccumulateCounts walk_rows(const Present& present, const History& beyond, const 
     if (discounts)
       for (int x = 0; x < v.width; ++x)
         fetched[std::size_t(worker)][std::size_t(x)] =
-            s.total[x] > 0 ? narrow(color_at(s.history, x)) : glm::vec4(0.0f);
+            s.total[x] > 0 ? held_color(color_at(s.history, x)) : glm::vec4(0.0f);
   };
   const auto move_on = [&](const AccumulateView& v, int y, const RowScratch& s, int worker) {
     if (discounts) discount_clipped(present, v, y, s, fetched[std::size_t(worker)].data());

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/held_float.h"
 #include "resolve/sample_weights.h"
 
 namespace varve {
@@ -73,7 +74,7 @@ void weigh_positions(Samples samples, SampleFilter filter, Present& out, Workers
         weights.visit(x, y, positive_only, [&](const Present& sample, int i, int j, double weight) {
           sum += glm::dvec4(plane_of(sample, k).at(i, j)) * weight;
         });
-        (k == 0 ? out.color : out.companions[k - 1]).at(x, y) = glm::vec4(sum / whole);
+        (k == 0 ? out.color : out.companions[k - 1]).at(x, y) = held_color(sum / whole);
       }
     }
   });

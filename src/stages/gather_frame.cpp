@@ -93,14 +93,15 @@ struct SubjectFrames {
     return *made;
   }
 
-  /// A held or doubled frame shows nothing new: of frames that are the same to the last bit, the one nearest to the
-  /// resolved frame counts, the earlier of two. Vectors are followed through the others.
+  /// A held or doubled frame shows nothing new: of frames that are the same to the last bit and sampled at the same
+  /// place, the one nearest to the resolved frame counts, the earlier of two. Vectors are followed through the others.
+  /// Equal pictures of other places are news: a plain edge looks the same from half of all places.
   bool repeats(std::size_t i, std::size_t begin, std::size_t end, std::size_t resolved) const {
     const auto rank = [&](std::size_t k) {
       return k > resolved ? 2 * (k - resolved) : k == resolved ? 0 : 2 * (resolved - k) - 1;
     };
     for (std::size_t k = begin; k <= end && print(i) != 0; ++k)
-      if (print(k) == print(i) && rank(k) < rank(i)) return true;
+      if (print(k) == print(i) && present(k).jitter == present(i).jitter && rank(k) < rank(i)) return true;
     return false;
   }
 };

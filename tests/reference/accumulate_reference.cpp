@@ -28,15 +28,26 @@ struct Fetched {
   unsigned reject = 0;
 };
 
-bool valid_history(const History& h, int x, int y) { return h.color.window().contains(x, y) && h.total.at(x, y) > 0; }
+/// The history as it is stored, or as nothing has rounded it.
+struct Past {
+  const History& stored;
+  const ExactHistory* exact;
+  double color(int x, int y, std::size_t k) const {
+    return exact ? exact->color.at(x, y)[int(k)] : double(stored.color.at(x, y)[int(k)]);
+  }
+  double total(int x, int y) const { return exact ? exact->total.at(x, y) : double(stored.total.at(x, y)); }
+  double spread(int x, int y) const { return exact ? exact->spread.at(x, y) : double(stored.spread.at(x, y)); }
+  bool valid(int x, int y) const { return stored.color.window().contains(x, y) && total(x, y) > 0; }
+};
 
 bool same_surface(float a, float b, double tolerance) {
   return a == b || std::abs(double(a) - double(b)) <= tolerance * std::min(double(a), double(b));
 }
 
 /// History at a position given in pixel centres (integer at a centre).
-Fetched fetch(const History& h, const Present& present, const RecursiveParameters& p, int x, int y) {
+Fetched fetch(const Past& past, const Present& present, const RecursiveParameters& p, int x, int y) {
   Fetched f;
+  const History& h = past.stored;
   const glm::vec2 motion = present.motion.empty() ? glm::vec2(0.0f) : present.motion.at(x, y);
   if (!std::isfinite(motion.x) || !std::isfinite(motion.y)) {
     f.reject = kRejectVector;
@@ -62,7 +73,7 @@ Fetched fetch(const History& h, const Present& present, const RecursiveParameter
     for (int i = 0; i < 2; ++i) {
       const double weight = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
       if (weight <= 0) continue;
-      bool good = valid_history(h, bx + i, by + j);
+      bool good = past.valid(bx + i, by + j);
       if (good && test_depth && !same_surface(h.depth.at(bx + i, by + j), present.depth.at(x, y), p.depth_tolerance)) {
         good = false;
         depth_failed = true;
@@ -72,9 +83,9 @@ Fetched fetch(const History& h, const Present& present, const RecursiveParameter
         continue;
       }
       share += weight;
-      youngest = std::min(youngest, double(h.total.at(bx + i, by + j)));
-      if (weight > heaviest) heaviest = weight, f.spread = h.spread.at(bx + i, by + j);
-      for (std::size_t k = 0; k < 4; ++k) mean[k] += weight * double(h.color.at(bx + i, by + j)[int(k)]);
+      youngest = std::min(youngest, past.total(bx + i, by + j));
+      if (weight > heaviest) heaviest = weight, f.spread = past.spread(bx + i, by + j);
+      for (std::size_t k = 0; k < 4; ++k) mean[k] += weight * past.color(bx + i, by + j, k);
     }
   if (share < 0.25) {
     f.reject = depth_failed ? kRejectDepth : kRejectEmptyHistory;
@@ -84,10 +95,10 @@ Fetched fetch(const History& h, const Present& present, const RecursiveParameter
   f.total = youngest;
   for (std::size_t k = 0; k < 4; ++k) f.color[k] = mean[k] / share;
 
-  // Wider filters need all sixteen, and rows that are valid from end to end.
+  // Wider filters need all sixteen.
   bool sixteen = all && bx - 1 >= w.x0 && bx + 2 < w.x1 && by - 1 >= w.y0 && by + 2 < w.y1;
   for (int j = -1; sixteen && j <= 2; ++j)
-    for (int i = w.x0; i < w.x1; ++i) sixteen = sixteen && valid_history(h, i, by + j);
+    for (int i = -1; i <= 2; ++i) sixteen = sixteen && past.valid(bx + i, by + j);
   if (!sixteen || p.history_filter == HistoryFilter::bilinear) return f;
 
   double weights = 0;
@@ -98,7 +109,7 @@ Fetched fetch(const History& h, const Present& present, const RecursiveParameter
       if (corner && p.history_filter == HistoryFilter::catmull_rom5) continue;
       const double weight = keys(i - fx) * keys(j - fy);
       weights += weight;
-      for (std::size_t k = 0; k < 4; ++k) sum[k] += weight * double(h.color.at(bx + i, by + j)[int(k)]);
+      for (std::size_t k = 0; k < 4; ++k) sum[k] += weight * past.color(bx + i, by + j, k);
     }
   for (std::size_t k = 0; k < 4; ++k) {
     f.color[k] = sum[k] / weights;
@@ -106,7 +117,7 @@ Fetched fetch(const History& h, const Present& present, const RecursiveParameter
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i) {
-        const double tap = h.color.at(bx + i, by + j)[int(k)];
+        const double tap = past.color(bx + i, by + j, k);
         low = std::min(low, tap);
         high = std::max(high, tap);
       }
@@ -165,7 +176,7 @@ Color weighed_present(const Present& present, SampleFilter filter, std::optional
 
 Pixel rectified_history(const Present& present, const History& previous, const RecursiveParameters& p,
                         const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
-                        int y, Color& fetched, double& trust) {
+                        int y, Color& fetched, double& trust, const ExactHistory* exact) {
   Pixel out;
   double w = 1;
   const Color now = present_at(present, p.sample_filter, jitter, x, y, w);
@@ -173,7 +184,7 @@ Pixel rectified_history(const Present& present, const History& previous, const R
   if (previous.empty())
     past.reject = restart_bit;
   else
-    past = fetch(previous, present, p, x, y);
+    past = fetch({previous, exact}, present, p, x, y);
   trust = previous.empty() ? 0 : judge_history(past, present, previous, p, x, y);
   out.reject = past.reject | (present.valid.at(x, y) > 0 ? 0u : unsigned(kRejectPresent));
   fetched = past.color;
@@ -194,10 +205,10 @@ Pixel rectified_history(const Present& present, const History& previous, const R
 
 Pixel accumulate_pixel(const Present& present, const History& previous, const RecursiveParameters& p,
                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
-                       int y) {
+                       int y, const ExactHistory* exact) {
   Color fetched;
   double trust = 0;
-  const Pixel past = rectified_history(present, previous, p, rectify, jitter, restart_bit, x, y, fetched, trust);
+  const Pixel past = rectified_history(present, previous, p, rectify, jitter, restart_bit, x, y, fetched, trust, exact);
   double w = 1;
   const Color now = present_at(present, p.sample_filter, jitter, x, y, w);
   Pixel out = past;
@@ -231,7 +242,7 @@ Pixel predict_pixel(const Present& present, const History& previous, const Recur
                     const RectifyParameters& rectify, int x, int y) {
   Pixel out;
   if (previous.empty()) return out;
-  Fetched past = fetch(previous, present, p, x, y);
+  Fetched past = fetch({previous, nullptr}, present, p, x, y);
   judge_history(past, present, previous, p, x, y);
   if (past.total <= 0) return out;
   out.color = past.color;

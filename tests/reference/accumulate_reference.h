@@ -17,16 +17,23 @@ struct Pixel {
   unsigned reject = 0;
 };
 
+/// A history that nothing has rounded, for soaks: read in place of the floats of a History, which lends its window and
+/// what the tests compare with.
+struct ExactHistory {
+  Plane<glm::dvec4> color;
+  Plane<double> total, spread;
+};
+
 /// What accumulate() must give at (x, y), display coordinates.
 Pixel accumulate_pixel(const Present& present, const History& previous, const RecursiveParameters& recursive,
                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
-                       int y);
+                       int y, const ExactHistory* exact = nullptr);
 
 /// The history at (x, y) before the present is blended in: rectified; `fetched` is what it was before that,
 /// `trust` how much of it the tests believe.
 Pixel rectified_history(const Present& present, const History& previous, const RecursiveParameters& recursive,
                         const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, unsigned restart_bit, int x,
-                        int y, Color& fetched, double& trust);
+                        int y, Color& fetched, double& trust, const ExactHistory* exact = nullptr);
 
 /// The present at a pixel centre and the weight of its sample, 0 where it is not valid.
 Color weighed_present(const Present& present, SampleFilter filter, std::optional<glm::dvec2> jitter, int x, int y,

@@ -350,6 +350,29 @@ TEST(Accumulate, FarPixelsHaveNoInfluence) {
     }
 }
 
+// Filters of four and six taps once fell back to two along the whole row of a pixel that never had data.
+TEST(Accumulate, APixelWithoutHistoryIsNoMatterOfItsRow) {
+  Workers workers(1);
+  const Window w{0, 0, 48, 15};
+  for (const HistoryFilter filter : {HistoryFilter::bilinear, HistoryFilter::catmull_rom, HistoryFilter::catmull_rom9,
+                                     HistoryFilter::catmull_rom5, HistoryFilter::cubic}) {
+    RecursiveParameters recursive;
+    recursive.history_filter = filter;
+    const test::NoiseOptions noise{5, 0, 0.8, 0, false, 1};
+    const Present good = noise_present(w, noise, workers), next = noise_present(w, {6, 0, 0.8, 0, false, 1}, workers);
+    Present bad = noise_present(w, noise, workers);
+    bad.color.at(8, 7).g = std::numeric_limits<float>::quiet_NaN();
+    sanitize(bad, workers);
+    const History one = next_history(next, next_history(good, {}, recursive, {}, workers), recursive, {}, workers);
+    const History other = next_history(next, next_history(bad, {}, recursive, {}, workers), recursive, {}, workers);
+    for (int y = 0; y < w.y1; ++y)
+      for (int x = 0; x < w.x1; ++x) {
+        if (std::abs(x - 8) <= 4 && std::abs(y - 7) <= 4) continue;
+        ASSERT_EQ(one.color.at(x, y), other.color.at(x, y)) << x << "," << y;
+      }
+  }
+}
+
 TEST(Accumulate, BadPixelsKeepTheirHistoryAndSpreadNowhere) {
   Workers workers(1);
   const Window w{0, 0, 15, 15};
