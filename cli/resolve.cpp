@@ -25,6 +25,11 @@ int describe(const Settings& settings) {
   return int(ExitCode::done);
 }
 
+void write_lists(const ResolveJob& job, const RerenderList& list) {
+  for (const std::string& path : job.rerender.files)
+    write_file(path, path.ends_with(".csv") ? rerender_csv(list) : rerender_json(list, version()));
+}
+
 std::vector<std::string> output_folders(const ResolveJob& job) {
   const auto folder_of = [](const std::string& path) { return std::filesystem::path(path).parent_path().string(); };
   std::vector<std::string> folders = {folder_of(job.output.text())};
@@ -64,6 +69,7 @@ int run_resolve(Settings& settings) {
     throw;
   }
   progress.summary(summary);
+  if (summary.rerender) write_lists(settings.job, *summary.rerender);
   if (!settings.job.report.empty()) write_report(settings.job.report, rows);
   return summary.stopped ? 128 + stop_signal() : int(ExitCode::done);
 }

@@ -9,6 +9,7 @@
 #include "plan/feature.h"
 #include "plan/knob.h"
 #include "plan/preset.h"
+#include "rerender_topic.h"
 #include "synth/scenes.h"
 
 namespace varve::cli {
@@ -186,7 +187,8 @@ Topic exit_topic() {
 
 std::vector<Topic> topics() {
   return {presets_topic(), features_topic(), aovs_topic(),     rejection_topic(),          conventions_topic(),
-          metrics_topic(), scenes_topic(),   patterns_topic(), jitter_conventions_topic(), exit_topic()};
+          metrics_topic(), scenes_topic(),   patterns_topic(), jitter_conventions_topic(), rerender_topic(),
+          exit_topic()};
 }
 
 std::string topic_names() {

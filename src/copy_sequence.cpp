@@ -33,7 +33,7 @@ std::vector<OutputPart> parts_of(const FrameHeaders& headers, const FramePixels&
 void copy_sequence(const ResolveJob& job) {
   const JitterSource jitter = parse_jitter_source(job.jitter);
   const SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter);
-  check_outputs(job, schedule_frames(job, info, ""));
+  check_outputs(job, schedule_frames(job, info, "", {}));
   Workers workers(job.threads);
   for (int frame : info.frames) {
     const FrameHeaders headers = read_frame_headers(job.input, frame, job.roles, jitter);

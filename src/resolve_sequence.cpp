@@ -7,6 +7,7 @@
 
 #include "stages/accumulate_frame.h"
 #include "stages/combine_resolved.h"
+#include "stages/evaluate_colors.h"
 #include "stages/follow_motion.h"
 #include "stages/frame_window.h"
 #include "stages/preflight.h"
@@ -102,6 +103,14 @@ void count(FrameReport& report, const SourceFrame& source, const std::vector<Res
   }
 }
 
+/// What to render again, beside all samples that are there.
+RerenderList list_renders(const Setup& s, RerenderSurvey survey) {
+  for (const auto& [frame, crops] : s.extras.frames)
+    for (const ExtraCrop& crop : crops)
+      if (crop.jitter) survey.positions[frame].emplace_back(crop.jitter->x, crop.jitter->y);
+  return make_rerender_list(std::move(survey.frames), survey.display, s.job.rerender, survey.positions);
+}
+
 /// Each kind of remark once: the numbers in it differ from frame to frame.
 void tell_of_cameras(const SourceFrame& source, std::set<std::string>& told, const ResolveEvents& events) {
   const std::string& remark = source.by_camera.remark;
@@ -115,7 +124,7 @@ Plan plan_sequence(const ResolveJob& asked, SequenceInfo& info) {
   const SettledLayers ordered = settle_layers(asked);
   const ResolveJob& job = ordered.job;
   Setup s = set_up(ordered);
-  check_outputs(job, schedule_frames(job, s.info, s.hash));
+  check_outputs(job, schedule_frames(job, s.info, s.hash, s.extras));
   info = std::move(s.info);
   return std::move(s.plan);
 }
@@ -130,13 +139,16 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
   if (!settled.note.empty() && events.warning) events.warning(settled.note);
   if (events.planned) events.planned(s.info, s.plan);
 
+  for (const std::string& warning : s.extras.warnings)
+    if (events.warning) events.warning(warning);
+
   // Preflight: what will be written, and whether it can be.
   Workers workers(job.threads);
   ResolveSummary summary;
   const auto stop = [&] { return summary.stopped = summary.stopped || (events.should_stop && events.should_stop()); };
-  std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash);
+  std::vector<ScheduledFrame> schedule = schedule_frames(job, s.info, s.hash, s.extras);
   check_outputs(job, schedule);
-  if (job.find_cuts) schedule = schedule_frames(job, s.info, s.hash, look_for_cuts(s, events, stop, workers));
+  if (job.find_cuts) schedule = schedule_frames(job, s.info, s.hash, s.extras, look_for_cuts(s, events, stop, workers));
 
   if (job.check_motion && s.plan.use_motion) check_vectors(job, s.info, events.warning, workers);
   std::vector<SubjectState> states(accumulated_subjects(s.info.first.outputs, s.info.first.subjects).size());
@@ -149,6 +161,7 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
                                      s.jitter,
                                      s.cameras,
                                      camera_track,
+                                     s.extras,
                                      s.into_working_space ? &*s.into_working_space : nullptr,
                                      s.reach.back_to_restart,
                                      shows_combined(s.aovs)};
@@ -166,13 +179,16 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
   int total = 0, done = 0;
   for (const ScheduledFrame& scheduled : schedule) total += scheduled.write;
 
-  const AccumulatorOptions accumulator{job.parameters, s.gather, s.aovs};
+  const AccumulatorOptions accumulator{job.parameters, s.gather, s.measured};
   const bool gathers = job.parameters.accumulator == Accumulator::gather;
   std::optional<TwoSidedPass> two_sided;
   if (job.parameters.accumulator == Accumulator::two_sided)
-    two_sided.emplace(schedule, s.reach, StepOptions{job.parameters, diagnostics_wanted(s.aovs)},
+    two_sided.emplace(schedule, s.reach, StepOptions{job.parameters, diagnostics_wanted(s.measured)},
                       job.request.spill_folder, read, stop, workers);
 
+  RerenderSurvey survey;
+  const Aov* const evaluation = find_aov("evaluation");
+  const bool evaluates = std::find(s.measured.begin(), s.measured.end(), evaluation) != s.measured.end();
   for (std::size_t i = 0; i < schedule.size() && !stop(); ++i) {
     ScheduledFrame& scheduled = schedule[i];
     if (!scheduled.write && !s.reach.back_to_restart) continue;  // there for its neighbors only
@@ -210,7 +226,9 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
     hold_layers(source, resolved, workers);
     count(report, source, resolved, workers);
     const bool writes = scheduled.write && !scheduled.complete;
-    const ResolvedColors written = writes ? colors_to_write(s, source, resolved, workers) : ResolvedColors();
+    ResolvedColors written = writes ? colors_to_write(s, source, resolved, workers) : ResolvedColors();
+    const std::deque<Evaluation> evaluations =
+        evaluates ? evaluate_colors(source, written.colors, job.rerender, survey, workers) : std::deque<Evaluation>();
     report.resolve_seconds = clock.lap();
     if (stop()) break;
 
@@ -219,8 +237,9 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
       const FileSet beside = source.pixels.empty() ? read_beside(s, source.headers, workers) : FileSet();
       const FileSet& pixels = source.pixels.empty() ? beside : source.pixels;
       in_frame(scheduled.frame, [&] {
-        report.half_overflows = write_outputs(s, report.path, source.headers, pixels, written.colors,
-                                              frames_used(schedule, i, s.reach), workers);
+        report.half_overflows =
+            write_outputs(s, report.path, source.headers, pixels, written.colors, frames_used(schedule, i, s.reach),
+                          extras_used(s.extras, schedule, i, s.reach), workers);
       });
       report.write_seconds = clock.lap();
       report.written = true;
@@ -231,6 +250,7 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
     for (std::size_t k = 0; k < resolved.size(); ++k) states[k].history = std::move(resolved[k].accumulated.history);
     if (events.frame) events.frame(report, scheduled.write ? ++done : done, total);
   }
+  if (!job.rerender.files.empty() && !summary.stopped) summary.rerender = list_renders(s, std::move(survey));
   return summary;
 }
 

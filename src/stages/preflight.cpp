@@ -23,14 +23,16 @@ namespace varve {
 namespace {
 
 /// True when a finished file of the same parameters and the same history stands under the output's name.
-bool is_complete(const std::string& path, const std::string& hash, const std::string& frames) {
+bool is_complete(const std::string& path, const std::string& hash, const std::string& frames,
+                 const std::string& extra) {
   try {
     const FileHeader header = read_header(path);
     const auto says = [&](const char* name, const std::string& text) {
       const Attribute* found = header.parts.front().attribute(name);
       return found && found->text == text;
     };
-    return says("varve:hash", hash) && says("varve:frames", frames) && has_every_chunk(path);
+    const bool same_extra = extra.empty() ? !header.parts.front().attribute("varve:extra") : says("varve:extra", extra);
+    return says("varve:hash", hash) && says("varve:frames", frames) && same_extra && has_every_chunk(path);
   } catch (const Failure&) {
     return false;
   }
@@ -134,7 +136,7 @@ std::vector<int> frames_in_reach(const ResolveJob& job, const SequenceInfo& info
 }
 
 std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash,
-                                            const std::map<int, std::string>& found_cuts) {
+                                            const ExtraSamples& extras, const std::map<int, std::string>& found_cuts) {
   const FrameReach reach = reach_of(job);
   std::vector<ScheduledFrame> schedule = frames_between(job, info, reach);
   mark_restarts(schedule, job.cuts, found_cuts);
@@ -142,8 +144,9 @@ std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const Sequenc
     for (std::size_t i = 0; i < schedule.size(); ++i) {
       ScheduledFrame& s = schedule[i];
       const std::string frames = frames_used(schedule, i, reach);
-      s.complete = s.write && is_complete(job.output.path(s.frame), hash, frames) &&
-                   (!job.diagnostics || is_complete(job.diagnostics->path(s.frame), hash, frames));
+      const std::string extra = extras_used(extras, schedule, i, reach);
+      s.complete = s.write && is_complete(job.output.path(s.frame), hash, frames, extra) &&
+                   (!job.diagnostics || is_complete(job.diagnostics->path(s.frame), hash, frames, extra));
     }
     if (reach.back_to_restart) drop_finished(schedule);
   }
@@ -189,6 +192,21 @@ std::string frames_used(const std::vector<ScheduledFrame>& schedule, std::size_t
   return format_frame_list(frames);
 }
 
+std::string extras_used(const ExtraSamples& extras, const std::vector<ScheduledFrame>& schedule, std::size_t index,
+                        const FrameReach& reach) {
+  const auto [first, last] = span_around(schedule, index, reach);
+  std::vector<int> frames;
+  std::string names;
+  for (std::size_t i = first; i <= last; ++i)
+    if (const std::string text = extra_files_text(extras, schedule[i].frame); !text.empty()) {
+      frames.push_back(schedule[i].frame);
+      names += text + ",";
+    }
+  if (names.empty()) return "";
+  return std::to_string(std::count(names.begin(), names.end(), ',')) + " files of frames " + format_frame_list(frames) +
+         ", " + hash_of(names);
+}
+
 std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info) {
   std::string text = parameters_text(job.parameters);
   // Where the history begins decides what recursion gives; a finite window knows nothing of other frames.
@@ -216,6 +234,10 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info)
     text += encoding;
   }
   for (const std::string& aov : job.request.aovs) text += " aov=" + aov;
+  if (std::find(job.request.aovs.begin(), job.request.aovs.end(), "evaluation") != job.request.aovs.end())
+    text += " want-samples=" + json_number(job.rerender.want_samples) +
+            " want-noise=" + json_number(job.rerender.want_noise);
+  if (!job.extra_list.empty()) text += " extra-list=" + std::filesystem::path(job.extra_list).filename().string();
   if (job.request.diagnostics_apart) text += " diagnostics=apart";
   if (!job.request.keep_channels) text += " keep=none";
   if (job.compression) text += std::string(" compression=") + name_of(*job.compression);
@@ -303,6 +325,15 @@ void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& sch
   check(job.output, "--output", outputs);
   if (job.diagnostics) check(*job.diagnostics, "--diagnostics", outputs);
   if (!job.preview_folder.empty()) check_writable(job.preview_folder + "/color.png");
+  for (const std::string& list : job.rerender.files) {
+    if (inputs.contains(canonical(list)) || outputs.contains(canonical(list)))
+      throw Failure(ExitCode::usage,
+                    "the list '" + list + "' is one of the frames read or written; give --rerender another name");
+    check_writable(list);
+  }
+  if (!job.rerender.files.empty() && job.resume)
+    throw Failure(ExitCode::usage,
+                  "--rerender looks at every frame, and --resume skips those that are done; leave one of them out");
   if (job.report.empty()) return;
   if (inputs.contains(canonical(job.report)) || outputs.contains(canonical(job.report)))
     throw Failure(ExitCode::usage,

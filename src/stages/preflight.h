@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "plan/extra_samples.h"
 #include "plan/resolve_job.h"
 #include "stages/cameras_around.h"
 
@@ -36,6 +37,7 @@ struct ScheduledFrame {
 /// use of. `found_cuts` begin shots besides those of the job; with the evidence. With --resume, frames that no
 /// unfinished frame depends on are left out.
 std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const SequenceInfo& info, const std::string& hash,
+                                            const ExtraSamples& extras,
                                             const std::map<int, std::string>& found_cuts = {});
 
 /// The same frames, whether they are done or not: those that cuts are to be looked for in.
@@ -50,6 +52,10 @@ std::pair<std::size_t, std::size_t> span_around(const std::vector<ScheduledFrame
 
 /// The same frames as a frame list.
 std::string frames_used(const std::vector<ScheduledFrame>& schedule, std::size_t index, const FrameReach& reach);
+
+/// The files of further samples of these frames: their number, their frames, and a hash of their names; "" without any.
+std::string extras_used(const ExtraSamples& extras, const std::vector<ScheduledFrame>& schedule, std::size_t index,
+                        const FrameReach& reach);
 
 /// Every choice that decides the pixels, as text. Names of files come without their folders, so that equal work gives
 /// equal bytes wherever it is done.

@@ -9,12 +9,14 @@ namespace varve {
 
 namespace {
 
-WriteOptions write_options(const Setup& s, const std::string& frames_used) {
-  return {s.job.zip_level,
-          {{"varve:version", version()},
-           {"varve:parameters", s.parameters},
-           {"varve:hash", s.hash},
-           {"varve:frames", frames_used}}};
+WriteOptions write_options(const Setup& s, const std::string& frames_used, const std::string& extras_used) {
+  WriteOptions options{s.job.zip_level,
+                       {{"varve:version", version()},
+                        {"varve:parameters", s.parameters},
+                        {"varve:hash", s.hash},
+                        {"varve:frames", frames_used}}};
+  if (!extras_used.empty()) options.attributes.push_back({"varve:extra", extras_used});
+  return options;
 }
 
 }  // namespace
@@ -31,9 +33,9 @@ FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& worker
 
 std::size_t write_outputs(const Setup& s, const std::string& path, const FrameHeaders& headers, const FileSet& pixels,
                           const std::vector<ResolvedSubject>& resolved, const std::string& frames_used,
-                          Workers& workers) {
+                          const std::string& extras_used, Workers& workers) {
   const FileHeader &source = headers.files.front(), &stored = files_on_disk(headers).front();
-  const WriteOptions options = write_options(s, frames_used);
+  const WriteOptions options = write_options(s, frames_used, extras_used);
   const std::vector<const Aov*> none;
   const bool apart = s.job.diagnostics.has_value();
   FileOutput color =

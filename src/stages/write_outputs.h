@@ -14,6 +14,6 @@ FileSet read_beside(const Setup& s, const FrameHeaders& headers, Workers& worker
 /// those of read_beside(). Returns how many values had to be held at the ends of half. Throws what write_frame throws.
 std::size_t write_outputs(const Setup& s, const std::string& path, const FrameHeaders& headers, const FileSet& pixels,
                           const std::vector<ResolvedSubject>& resolved, const std::string& frames_used,
-                          Workers& workers);
+                          const std::string& extras_used, Workers& workers);
 
 }  // namespace varve
