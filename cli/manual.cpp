@@ -154,7 +154,8 @@ std::string command_page(const Command& command) {
     for (const Option* option : rows) out += option_item(*option);
   }
   if (command.bit == kResolve)
-    out += topic_sections({"aovs", "rejection", "report", "conventions", "presets", "exit-codes"}) + files_section();
+    out += topic_sections({"aovs", "rejection", "report", "rerender", "conventions", "presets", "exit-codes"}) +
+           files_section();
   else if (command.bit == kCompare)
     out += topic_sections({"metrics", "conventions", "exit-codes"});
   else if (command.bit == kMeasure)

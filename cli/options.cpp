@@ -5,6 +5,7 @@
 #include "layer_options.h"
 #include "measure_options.h"
 #include "option_values.h"
+#include "rerender_options.h"
 #include "synth_options.h"
 
 namespace varve::cli {
@@ -347,6 +348,7 @@ std::vector<Option> option_table() {
   add_parameter_options(rows);
   add_motion_options(rows);
   add_diagnostic_options(rows);
+  add_rerender_options(rows);
   add_color_options(rows);
   add_compare_options(rows);
   add_measure_options(rows);

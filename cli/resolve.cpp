@@ -28,6 +28,11 @@ int describe(const Settings& settings) {
   return int(ExitCode::done);
 }
 
+void write_lists(const ResolveJob& job, const RerenderList& list) {
+  for (const std::string& path : job.rerender.files)
+    write_file(path, path.ends_with(".csv") ? rerender_csv(list) : rerender_json(list, version()));
+}
+
 /// Writes the report of a run that did not come to its end; what happened matters more than that this may fail, too.
 void report_end(const Settings& settings, RunReport& report, bool checked, Progress& progress) {
   const std::string& path = settings.job.report;
@@ -111,9 +116,10 @@ int run_resolve(Settings& settings) {
     report.exit_code = 128 + stop_signal();
     report.sentence = "stopped as asked; --resume goes on from here";
     report_end(settings, report, checked, progress);
-  } else if (!settings.job.report.empty()) {
-    write_file(settings.job.report, report_text(report));
+    return report.exit_code;
   }
+  if (report.summary.rerender) write_lists(settings.job, *report.summary.rerender);
+  if (!settings.job.report.empty()) write_file(settings.job.report, report_text(report));
   return report.exit_code;
 }
 

@@ -10,6 +10,7 @@
 #include "plan/knob.h"
 #include "plan/preset.h"
 #include "report.h"
+#include "rerender_topic.h"
 #include "synth/scenes.h"
 
 namespace varve::cli {
@@ -186,9 +187,9 @@ Topic exit_topic() {
 }  // namespace
 
 std::vector<Topic> topics() {
-  return {presets_topic(), features_topic(), aovs_topic(),   rejection_topic(), conventions_topic(),
-          report_topic(),  metrics_topic(),  scenes_topic(), patterns_topic(),  jitter_conventions_topic(),
-          exit_topic()};
+  return {presets_topic(),  features_topic(), aovs_topic(),   rejection_topic(), conventions_topic(),
+          report_topic(),   metrics_topic(),  scenes_topic(), patterns_topic(),  jitter_conventions_topic(),
+          rerender_topic(), exit_topic()};
 }
 
 std::string topic_names() {

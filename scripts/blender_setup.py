@@ -237,7 +237,8 @@ def main():
     say('done: varve probe %s --check-jitter 16' % os.path.join(folder, 'frame.####.exr'))
 
 
-try:
-    main()
-except Exception as problem:  # background mode would go on and end with 0
-    stop('%s: %s' % (type(problem).__name__, problem))
+if __name__ == '__main__':  # scripts/rerender_blender.py uses what is here
+    try:
+        main()
+    except Exception as problem:  # background mode would go on and end with 0
+        stop('%s: %s' % (type(problem).__name__, problem))

@@ -9,6 +9,7 @@
 #include "stages/accumulate_frame.h"
 #include "stages/combine_resolved.h"
 #include "stages/continue_history.h"
+#include "stages/evaluate_colors.h"
 #include "stages/follow_motion.h"
 #include "stages/frame_window.h"
 #include "stages/half_vectors.h"
@@ -103,6 +104,14 @@ void count(FrameReport& report, const SourceFrame& source, const std::vector<Res
   }
 }
 
+/// What to render again, beside all samples that are there.
+RerenderList list_renders(const Setup& s, RerenderSurvey survey) {
+  for (const auto& [frame, crops] : s.extras.frames)
+    for (const ExtraCrop& crop : crops)
+      if (crop.jitter) survey.positions[frame].emplace_back(crop.jitter->x, crop.jitter->y);
+  return make_rerender_list(std::move(survey.frames), survey.display, s.job.rerender, survey.positions);
+}
+
 /// Each kind of remark once: the numbers in it differ from frame to frame.
 void tell_of_cameras(const SourceFrame& source, std::set<std::string>& told, const ResolveEvents& events) {
   const std::string& remark = source.by_camera.remark;
@@ -146,6 +155,9 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
   if (!settled.note.empty() && events.warning) events.warning(settled.note);
   if (events.planned) events.planned(s.info, s.plan);
 
+  for (const std::string& warning : s.extras.warnings)
+    if (events.warning) events.warning(warning);
+
   // Preflight: what will be written, and whether it can be.
   Workers workers(job.threads);
   const StateHead* before = s.before ? &*s.before : nullptr;
@@ -154,7 +166,7 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
   if (events.checked) events.checked(s.parameters, s.hash);
   for (const std::string& folder : output_folders(job)) remove_leftovers(folder);
   if (job.find_cuts) schedule = schedule_frames(job, s.info, before, look_for_cuts(s, events, stop, workers));
-  InputWatch watch{job.input};
+  InputWatch watch{job.input, s.extras};
   mark_finished(s, watch, schedule);
 
   if (job.check_motion && s.plan.use_motion) check_vectors(job, s.info, events.warning, workers);
@@ -170,6 +182,7 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
                                      s.jitter,
                                      s.cameras,
                                      camera_track,
+                                     s.extras,
                                      s.into_working_space ? &*s.into_working_space : nullptr,
                                      s.reach.back_to_restart,
                                      shows_combined(s.aovs)};
@@ -190,13 +203,16 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
   int total = 0, done = 0;
   for (const ScheduledFrame& scheduled : schedule) total += scheduled.write;
 
-  const AccumulatorOptions accumulator{job.parameters, s.gather, s.aovs};
+  const AccumulatorOptions accumulator{job.parameters, s.gather, s.measured};
   const bool gathers = job.parameters.accumulator == Accumulator::gather;
   std::optional<TwoSidedPass> two_sided;
   if (job.parameters.accumulator == Accumulator::two_sided)
-    two_sided.emplace(schedule, s.reach, StepOptions{job.parameters, diagnostics_wanted(s.aovs)},
+    two_sided.emplace(schedule, s.reach, StepOptions{job.parameters, diagnostics_wanted(s.measured)},
                       job.request.spill_folder, read, stop, workers);
 
+  RerenderSurvey survey;
+  const Aov* const evaluation = find_aov("evaluation");
+  const bool evaluates = std::find(s.measured.begin(), s.measured.end(), evaluation) != s.measured.end();
   for (std::size_t i = 0; i < schedule.size() && !stop(); ++i) {
     ScheduledFrame& scheduled = schedule[i];
     if (!scheduled.write && !s.reach.back_to_restart) continue;  // there for its neighbors only
@@ -234,7 +250,9 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
     hold_layers(source, resolved, workers);
     count(report, source, resolved, workers);
     const bool writes = scheduled.write && !scheduled.complete;
-    const ResolvedColors written = writes ? colors_to_write(s, source, resolved, workers) : ResolvedColors();
+    ResolvedColors written = writes ? colors_to_write(s, source, resolved, workers) : ResolvedColors();
+    const std::deque<Evaluation> evaluations =
+        evaluates ? evaluate_colors(source, written.colors, job.rerender, survey, workers) : std::deque<Evaluation>();
     report.resolve_seconds = clock.lap();
     if (stop()) break;
 
@@ -243,7 +261,8 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
       const FileSet beside = source.pixels.empty() ? read_beside(s, source.headers, workers) : FileSet();
       const FileSet& pixels = source.pixels.empty() ? beside : source.pixels;
       in_frame(scheduled.frame, [&] {
-        const Provenance provenance = provenance_of(frames_used(schedule, i, s.reach, before, watch));
+        const Provenance provenance = provenance_of(frames_used(schedule, i, s.reach, before, watch),
+                                                    extras_used(s.extras, schedule, i, s.reach));
         const auto check = [&] { check_unchanged(watch, scheduled.frame); };
         report.half_overflows =
             write_outputs(s, report.path, source.headers, pixels, written.colors, provenance, check, workers);
@@ -259,6 +278,7 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
       save_states(s, source.headers, frames_used(schedule, i, s.reach, before, watch), states);
     if (events.frame) events.frame(report, scheduled.write ? ++done : done, total);
   }
+  if (!job.rerender.files.empty() && !summary.stopped) summary.rerender = list_renders(s, std::move(survey));
   return summary;
 }
 

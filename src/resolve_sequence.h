@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "base/reject.h"
@@ -11,6 +12,7 @@
 #include "motion/repair_motion.h"
 #include "plan/plan.h"
 #include "plan/resolve_job.h"
+#include "rerender/rerender_list.h"
 #include "resolve/light_sum.h"
 
 namespace varve {
@@ -40,7 +42,8 @@ struct FrameReport {
 
 struct ResolveSummary {
   int frames_written = 0, frames_skipped = 0;
-  bool stopped = false;  ///< asked to stop between frames
+  bool stopped = false;                  ///< asked to stop between frames
+  std::optional<RerenderList> rerender;  ///< where job.rerender names files for it, and all frames were done
 };
 
 /// Calls of the resolver to whoever runs it. All may be empty.

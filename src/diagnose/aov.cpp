@@ -58,6 +58,11 @@ constexpr Aov kAovs[] = {
      "How far the vector to the frame before and the vector that leads back from there miss each other. 0 where one of "
      "them is not known.",
      kByGather},
+    {"evaluation", "", PixelType::float32, "samples", "0 to 4096", "inferno", 0, 16,
+     "Samples that the pixel lacks: what --want-samples and --want-noise ask for less what it has; all that is wanted "
+     "where history was turned down and only its own sample is left. Noise is that of the plane variance, in the "
+     "gather as far as the pixel's samples are enough to tell it, else the spread of the 3x3 samples around over the "
+     "plane count. --rerender makes a list of it."},
     {"layer-index", "", PixelType::float32, "layers", "0 and up", "turbo", 0, 8,
      "With --layers: the layer whose motion the pixel follows, 1 being the nearest; 0 for the background, and where "
      "nothing is composited. In a deep color: the sample."},

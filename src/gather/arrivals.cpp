@@ -68,8 +68,8 @@ void scattered_tiles(const GatherSource& source, const Carried& field, const Til
 }
 
 /// Adds what arrives in the tile of `out` from a block of source `f` whose first pixel is (x0, y0). `target` is the
-/// sample of that number in the resolved frame.
-void collect_block(std::span<const GatherSource> sources, const GatherSource& target, std::size_t f,
+/// sample in the resolved frame whose light it is held against; none where that is its own frame.
+void collect_block(std::span<const GatherSource> sources, const GatherSource* target, std::size_t f,
                    const Carried& carried, int x0, int y0, const LightRule& light, const SurfaceTest& test,
                    TileArrivals& out) {
   const GatherSource& source = sources[f];
@@ -77,7 +77,7 @@ void collect_block(std::span<const GatherSource> sources, const GatherSource& ta
   const double ox = 0.5 + source.jitter.x - out.tile.x0, oy = 0.5 + source.jitter.y - out.tile.y0;
   const float low = -float(out.around) / kBinsPerPixel, high = float(kTile) - low;
   constexpr float most = std::numeric_limits<float>::max();
-  const bool lit = light.gain && source.present != target.present;
+  const bool lit = light.gain && target;
   const int x1 = std::min(x0 + kTile, w.x1), y1 = std::min(y0 + kTile, w.y1);
   for (int y = y0; y < y1; ++y) {
     const glm::vec3* field = carried.row(y) - w.x0;
@@ -99,7 +99,7 @@ void collect_block(std::span<const GatherSource> sources, const GatherSource& ta
       if (lit) {
         const glm::dvec2 at = glm::dvec2(double(ax), double(ay)) + glm::dvec2(out.tile.x0, out.tile.y0);
         const ShadingGain g =
-            shading_gain(source, x, y, target, at, {a.id, a.depth}, test, light.dead_zone, light.weight);
+            shading_gain(source, x, y, *target, at, {a.id, a.depth}, test, light.dead_zone, light.weight);
         a.gain = g.gain, a.weight = g.weight;
         a.light = std::clamp(a.light * g.gain, -most, most);  // statistics of infinities are no numbers
       }
@@ -214,7 +214,9 @@ void collect_arrivals(const TileGrid& grid, int column, int row, std::span<const
   const std::size_t samples = samples_of(sources);
   for (std::size_t f = 0; f < sources.size(); ++f) {
     const Window& w = sources[f].window();
-    const GatherSource& own = sources[present * samples + sources[f].sample];
+    const GatherSource* own = &sources[present * samples + (sources[f].whole ? sources[f].sample : 0)];
+    if (!own->whole) own = &sources[present * samples];
+    if (f / samples == present) own = nullptr;
     for (std::uint32_t b = lists[f].begin[tile]; b < lists[f].begin[tile + 1]; ++b)
       collect_block(sources, own, f, fields[f], w.x0 + int(lists[f].blocks[b] & 0xFFFF) * kTile,
                     w.y0 + int(lists[f].blocks[b] >> 16) * kTile, light, test, out);

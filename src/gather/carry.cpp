@@ -106,7 +106,9 @@ Carried carry_present(const GatherSource& present, Workers& workers) {
   Carried field(w);
   const Plane<float>& depth = present.present->depth;
   workers.for_rows(w.y0, w.y1, [&](int y) {
-    for (int x = w.x0; x < w.x1; ++x) field.at(x, y) = glm::vec3(0, 0, depth.empty() ? 0.0f : depth.at(x, y));
+    for (int x = w.x0; x < w.x1; ++x)
+      field.at(x, y) =
+          is_followed(present, x, y) ? glm::vec3(0, 0, depth.empty() ? 0.0f : depth.at(x, y)) : glm::vec3(kNowhere);
   });
   return field;
 }
@@ -120,6 +122,7 @@ Carried carry(const GatherSource& source, bool to_future, const SurfaceTest& tes
     for (int x = w.x0; x < w.x1; ++x) {
       glm::vec3& out = field.at(x, y);
       out = glm::vec3(kNowhere);
+      if (!is_followed(source, x, y)) continue;
       const glm::dvec2 v = vectors ? glm::dvec2(vectors->at(x, y)) : glm::dvec2(0);
       if (!(v.x == v.x)) continue;
       const glm::dvec2 from = source.position(x, y);

@@ -29,14 +29,18 @@ std::vector<Carried> carry_all(std::span<const GatherSource> sources, std::size_
   std::vector<Carried> fields(sources.size());
   for (std::size_t s = 0; s < samples; ++s) {
     const auto at = [&](std::size_t frame) { return frame * samples + s; };
-    const auto followed = [&](std::size_t frame) { return Followed{&sources[at(frame)], &fields[at(frame)]}; };
+    // A sample that is not everywhere in both frames moves as the first one does.
+    const auto step = [&](std::size_t from, std::size_t frame) {
+      const std::size_t to = sources[at(from)].whole && sources[at(frame)].whole ? at(frame) : frame * samples;
+      return Followed{&sources[to], &fields[to]};
+    };
     fields[at(present)] = carry_present(sources[at(present)], workers);
     for (std::size_t i = present + 1; i < frames; ++i)
       fields[at(i)] =
-          carry(sources[at(i)], false, test, followed(i - 1), i - present > 1 ? followed(i - 2) : Followed{}, workers);
+          carry(sources[at(i)], false, test, step(i, i - 1), i - present > 1 ? step(i, i - 2) : Followed{}, workers);
     for (std::size_t i = present; i-- > 0;)
       fields[at(i)] =
-          carry(sources[at(i)], true, test, followed(i + 1), present - i > 1 ? followed(i + 2) : Followed{}, workers);
+          carry(sources[at(i)], true, test, step(i, i + 1), present - i > 1 ? step(i, i + 2) : Followed{}, workers);
   }
   return fields;
 }
@@ -178,8 +182,10 @@ Accumulated make_output(const Present& present, const DiagnosticsWanted& wanted)
 void keep_present(Accumulated& out, std::span<const GatherSource> own, int x, int y) {
   const auto mean = [&](const auto& plane) {
     glm::dvec4 sum(0);
-    for (const GatherSource& sample : own) sum += glm::dvec4(plane(*sample.present).at(x, y));
-    return held_color(sum / double(own.size()));
+    int count = 0;
+    for (const GatherSource& sample : own)
+      if (sample.whole) sum += glm::dvec4(plane(*sample.present).at(x, y)), ++count;
+    return held_color(sum / double(count));
   };
   out.history.color.at(x, y) = mean([](const Present& p) -> const Plane<glm::vec4>& { return p.color; });
   for (std::size_t k = 0; k < out.history.companions.size(); ++k)

@@ -49,7 +49,7 @@ Plane<glm::vec2> opposite_vectors(const GatherSource& source, const GatherSource
   workers.for_rows(w.y0, w.y1, [&](int y) {
     for (int x = w.x0; x < w.x1; ++x) {
       const Closest& start = closest.at(x, y);
-      if (!(start.distance < 1e9f)) continue;
+      if (!(start.distance < 1e9f) || !is_followed(source, x, y)) continue;
       const SurfaceKey key = surface_at(*source.present, x, y);
       const glm::dvec2 target = source.position(x, y);
       glm::dvec2 at = target - glm::dvec2(back.at(start.x, start.y));

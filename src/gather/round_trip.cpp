@@ -37,6 +37,7 @@ Plane<glm::vec2> trusted_vectors(const GatherSource& source, const Plane<glm::ve
   Plane<glm::vec2> trusted = vectors.clone();
   workers.for_rows(w.y0, w.y1, [&](int y) {
     for (int x = w.x0; x < w.x1; ++x) {
+      if (!is_followed(source, x, y)) continue;
       glm::vec2& v = trusted.at(x, y);
       const double length = std::sqrt(double(v.x) * double(v.x) + double(v.y) * double(v.y));
       if (miss(source, x, y, glm::dvec2(v), neighbor, back, test) > tolerance + 0.01 * length)

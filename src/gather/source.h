@@ -21,12 +21,15 @@ struct LightRange {
 
 /// A frame of the window, or one of its samples where every pixel has several: they lie side by side, those of a frame
 /// together, each with vectors and light of its own. `backward` and `forward` are undilated; either is NaN where
-/// nothing is known. All planes have the window of present->color.
+/// nothing is known. All planes have the window of present->color; a frame that lacks a sample that others have gives a
+/// present without pixels.
 struct GatherSource {
   const Present* present = nullptr;
-  std::size_t sample = 0;                          ///< counts within the frame; every frame has as many
-  glm::dvec2 jitter{0};                            ///< sample position minus pixel centre, pixels
-  bool repeats = false;                            ///< its samples are those of another frame: they count once, there
+  std::size_t sample = 0;  ///< counts within the frame; every frame has as many
+  bool whole = true;       ///< false: only some pixels have this sample, those that are valid, and nothing is followed
+                           ///< through the others; the first sample of a frame is whole
+  glm::dvec2 jitter{0};    ///< sample position minus pixel centre, pixels
+  bool repeats = false;    ///< its samples are those of another frame: they count once, there
   const Plane<glm::vec2>* backward = nullptr;      ///< to the frame before; null: at rest
   const Plane<glm::vec2>* forward = nullptr;       ///< to the frame after; null: at rest
   const Plane<LightRange>* light_range = nullptr;  ///< local_range(); null: no test of it
@@ -45,6 +48,9 @@ struct GatherSource {
     return plane.row(plane.window().y0 + int(pixel >> 16))[pixel & 0xFFFF];
   }
 };
+
+/// Whether the way of a pixel's sample is of use.
+inline bool is_followed(const GatherSource& s, int x, int y) { return s.whole || s.present->valid.at(x, y) > 0; }
 
 /// Samples in each pixel of a window of frames.
 inline std::size_t samples_of(std::span<const GatherSource> sources) {

@@ -215,8 +215,10 @@ constexpr Feature kFeatures[] = {
     {technique, 114, "Y", "Bound the weight so that blur stays below a limit", Reach::planned,
      "the accumulator is missing"},
     {technique, 115, "Y", "Blur against aliasing, lag against aliasing", Reach::option, "`varve measure --plot`"},
-    {technique, 116, "Y", "Evaluate again where history failed", Reach::planned,
-     "--aov=reject shows where; a list for the renderer is missing"},
+    {technique, 116, "Y", "Evaluate again where history failed", Reach::option,
+     "--aov=evaluation is the map, --want-samples and --want-noise the aim; --rerender tells the renderer, --extra "
+     "takes "
+     "the samples in"},
     {technique, 117, "Y", "Bound the weight so that the residual stays below a limit", Reach::planned,
      "the accumulator is missing"},
     {technique, 118, "Y", "The published figures", Reach::planned,
@@ -255,7 +257,9 @@ constexpr Feature kFeatures[] = {
      "--aov=count --aov=count-past --aov=count-future --aov=clip --aov=reject --aov=repaired --aov=variance "
      "--aov=removed "
      "and others"},
-    {beyond, 10, "", "A list of what to render again", Reach::planned, "--aov=reject shows where history is missing"},
+    {beyond, 10, "", "A list of what to render again", Reach::option,
+     "--rerender writes frames, windows and sample positions for renderers, --rerender-budget shares samples out, "
+     "--extra takes back what was rendered; --aov=evaluation"},
     {beyond, 11, "", "The same bytes for any number of threads and any chunks", Reach::option,
      "--threads; chunks under --accumulator=gather and two-sided, with --preroll under recursive"},
     {beyond, 12, "", "Speed against accuracy measured on the shot itself", Reach::option, "`varve measure`"},

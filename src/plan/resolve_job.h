@@ -8,6 +8,7 @@
 #include "plan/parameters.h"
 #include "plan/plan.h"
 #include "plan/probe.h"
+#include "rerender/request.h"
 
 namespace varve {
 
@@ -30,8 +31,11 @@ struct ResolveJob {
   int zip_level = 1;
   std::string ocio_config, from_space, to_space;  ///< color conversion around the resolve; empty: none
   std::string preview_folder;                     ///< PNG of color and diagnostics; empty: none
-  std::string display, view;  ///< OpenColorIO display and view of the previews; empty: the config's default
-  std::string report;         ///< written by the caller when all is done; here only checked; empty: none
+  std::string display, view;       ///< OpenColorIO display and view of the previews; empty: the config's default
+  std::vector<std::string> extra;  ///< patterns of files with further samples; * in a name stands for anything
+  std::string extra_list;          ///< list of renders that tells where they lie; empty: they tell it themselves
+  RerenderRequest rerender;        ///< what is wanted of every pixel; its lists are written by the caller
+  std::string report;              ///< written by the caller when all is done; here only checked; empty: none
   bool resume = false;
   double wait_seconds = 0;          ///< how long to wait for requested frames that are not there yet; 0: not at all
   std::string state_in, state_out;  ///< files of the history before the first and after the last frame; empty: none

@@ -106,6 +106,7 @@ struct PresentView {
   Plane<glm::vec4> in_space;  // the neighborhood in the space of the box
   Plane<glm::vec2> at_rest;   // without vectors every pixel stays where it is
   std::vector<std::uint8_t> rows_valid;
+  bool reconstructed = false;  // at the pixel centers, before
 };
 
 PresentView view_present(AccumulateView& v, const Present& present, const RectifyParameters& rectify,
@@ -113,7 +114,8 @@ PresentView view_present(AccumulateView& v, const Present& present, const Rectif
                          Workers& workers) {
   const Window& w = present.color.window();
   PresentView made;
-  if (sample_filter != SampleFilter::none && jitter)
+  made.reconstructed = sample_filter != SampleFilter::none && !present.reconstructed.empty();
+  if (sample_filter != SampleFilter::none && jitter && !made.reconstructed)
     made.weighed = weigh_samples(present, sample_filter, *jitter, workers);
   else if (unjitter == Unjitter::bilinear && jitter)
     made.weighed.color = unjitter_bilinear(present, *jitter, workers);
@@ -125,7 +127,9 @@ PresentView view_present(AccumulateView& v, const Present& present, const Rectif
 
   v.width = w.width();
   v.height = w.height();
-  v.color = read_rows(made.weighed.color.empty() ? present.color : made.weighed.color);
+  v.color = read_rows(made.reconstructed           ? present.reconstructed
+                      : made.weighed.color.empty() ? present.color
+                                                   : made.weighed.color);
   v.neighbors = read_rows(made.in_space.empty() ? present.color : made.in_space);
   v.weight = read_rows(present.valid);
   v.motion = read_rows(present.motion.empty() ? made.at_rest : present.motion);
@@ -197,7 +201,7 @@ void view_choices(AccumulateView& v, const RecursiveParameters& recursive, const
 
 ShapeRules shape_rules(const RectifyParameters& rectify, const RecursiveParameters& recursive,
                        const PresentView& made) {
-  return {rectify, made.space, recursive.alpha, made.weighed.color.empty()};
+  return {rectify, made.space, recursive.alpha, made.weighed.color.empty() && !made.reconstructed};
 }
 
 /// What stands between and after the steps of the kernel; null: nothing.

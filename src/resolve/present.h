@@ -34,6 +34,8 @@ struct Present {
   std::optional<glm::dvec2> jitter;  ///< sample position minus pixel centre, pixels; none where it is not known, and
                                      ///< where color was reconstructed at the pixel centers
   Plane<float> sample_weight;        ///< from how much it was reconstructed there, 1 on average; else empty
+  Plane<glm::vec4> reconstructed;    ///< what a sample filter made of several samples of known positions, whose mean
+                                     ///< is color; else empty
   Plane<glm::vec2> motion;   ///< backward motion, pixels, y down; NaN where unusable; empty: at rest. As stored, or
                              ///< dilated by follow_motion()
   Plane<glm::vec2> forward;  ///< the same to the next frame; empty unless asked for and in the file

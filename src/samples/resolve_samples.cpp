@@ -108,7 +108,7 @@ Present resolve_samples(Samples samples, SampleFilter filter, Workers& workers, 
     has_weight[s] = position_weight(filter, *samples[s]->jitter) > 0;
   Present out;
   if (weighs) {
-    weigh_positions(samples, filter, out, workers);
+    weigh_positions(samples, filter, out, workers, double(samples.size()));
   } else {
     mean_colors(samples, out, workers);
     if (known) {

@@ -41,10 +41,10 @@ struct Weights {
         if (samples[s]->valid.at(x + tap.x, y + tap.y) > 0) use(*samples[s], x + tap.x, y + tap.y, tap.weight);
       }
   }
-  double sum(int x, int y, bool positive_only) const {
+  double sum(int x, int y, bool positive_only, double whole) const {
     double total = 0;
     visit(x, y, positive_only, [&](const Present&, int, int, double w) { total += w; });
-    return total / double(samples.size());
+    return total / whole;
   }
 };
 
@@ -54,7 +54,7 @@ double position_weight(SampleFilter filter, glm::dvec2 jitter) {
   return reconstruction_kernel(filter, jitter.x) * reconstruction_kernel(filter, jitter.y);
 }
 
-void weigh_positions(Samples samples, SampleFilter filter, Present& out, Workers& workers) {
+void weigh_positions(Samples samples, SampleFilter filter, Present& out, Workers& workers, double whole) {
   mean_colors(samples, out, workers);
   Weights weights{samples, {}};
   for (const Present* sample : samples) weights.taps.push_back(taps_of(filter, *sample->jitter));
@@ -63,18 +63,18 @@ void weigh_positions(Samples samples, SampleFilter filter, Present& out, Workers
   out.sample_weight = Plane<float>(w);
   workers.for_rows(w.y0, w.y1, [&](int y) {
     for (int x = w.x0; x < w.x1; ++x) {
-      double total = weights.sum(x, y, false);
+      double total = weights.sum(x, y, false, whole);
       const bool positive_only = total < 0.1;
-      if (positive_only) total = weights.sum(x, y, true);
+      if (positive_only) total = weights.sum(x, y, true, whole);
       out.sample_weight.at(x, y) = total > 0 ? float(total) : 0.0f;
       if (!(total > 0)) continue;
-      const double whole = total * double(samples.size());
+      const double weight_of_all = total * whole;
       for (std::size_t k = 0; k < planes; ++k) {
         glm::dvec4 sum(0);
         weights.visit(x, y, positive_only, [&](const Present& sample, int i, int j, double weight) {
           sum += glm::dvec4(plane_of(sample, k).at(i, j)) * weight;
         });
-        (k == 0 ? out.color : out.companions[k - 1]).at(x, y) = held_color(sum / whole);
+        (k == 0 ? out.color : out.companions[k - 1]).at(x, y) = held_color(sum / weight_of_all);
       }
     }
   });

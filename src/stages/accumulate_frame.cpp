@@ -64,11 +64,13 @@ std::vector<Resolved> accumulate_gather(const AccumulatorOptions& options, Frame
   repairs.clear();
   window[index].forward_repairs.clear();
   repairs.resize(states.size());
-  for (const std::vector<std::size_t>& group : gathered_together(window[index].headers)) {
+  const std::vector<std::vector<std::size_t>> groups = gathered_together(window[index].headers);
+  for (std::size_t output = 0; output < groups.size(); ++output) {
+    const std::vector<std::size_t>& group = groups[output];
     std::vector<GatherMemory>& memory = states[group.front()].gathered;
     resolved[group.front()].accumulated =
-        gather_frame(window, group, index, span.first, span.second, options.gather, options.parameters.repair, memory,
-                     diagnostics_wanted(options.aovs), workers);
+        gather_frame(window, output, group, index, span.first, span.second, options.gather, options.parameters.repair,
+                     memory, diagnostics_wanted(options.aovs), workers);
     for (std::size_t k = 0; k < group.size(); ++k) {
       repairs[group[k]] = std::move(memory[k][index].backward_said);
       window[index].forward_repairs.push_back(std::move(memory[k][index].forward_said));

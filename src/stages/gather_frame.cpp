@@ -14,23 +14,47 @@ namespace {
 
 constexpr double kRoundTrip = 0.05;  // px: an inverted vector that misses its sample by more is none
 
+/// What a frame has of a sample that it lacks.
+const Present& nothing() {
+  static const Present none;
+  return none;
+}
+
 /// The frames of one subject, with what is made for them: one of the samples of each pixel.
 struct SubjectFrames {
   const FrameWindow& window;
   std::size_t subject, sample;
-  std::size_t first, last;  // held, of one shot
+  std::optional<std::size_t> further;  // place among the further samples of a frame; none: it is the subject itself
+  std::size_t output;
+  const SubjectFrames* leader;  // the first sample, which all frames have everywhere; null: it is this one
+  std::size_t first, last;      // held, of one shot
   const GatherParameters& parameters;
   const RepairParameters& repair;
   GatherMemory& memory;
   SurfaceTest test;
   Workers& workers;
 
-  const Present& present(std::size_t i) const { return window[i].presents[subject]; }
+  const Present& present(std::size_t i) const {
+    if (!further) return window[i].presents[subject];
+    const auto& extras = window[i].extras;
+    return output < extras.size() && *further < extras[output].size() ? extras[output][*further] : nothing();
+  }
+  bool is_there(std::size_t i) const { return !further || !present(i).color.empty(); }
+  bool is_whole(std::size_t i) const {
+    const std::vector<std::uint8_t>& rows = present(i).rows_valid;
+    return !further || (is_there(i) && std::find(rows.begin(), rows.end(), 0) == rows.end());
+  }
+  /// The sample that those of frame `i` lead to in frame `to`.
+  const SubjectFrames& led_to(std::size_t i, std::size_t to) const {
+    return !further || (is_whole(i) && is_whole(to)) ? *this : *leader;
+  }
 
   GatherSource bare(std::size_t i) const {
     GatherSource s;
     s.present = &present(i);
     s.sample = sample;
+    s.whole = is_whole(i);
+    if (!is_there(i)) return s;
     SurfaceBlocks& blocks = memory[i].blocks;
     if (blocks.blocks.empty()) blocks = summarize_surfaces(present(i));
     s.blocks = &blocks;
@@ -49,15 +73,16 @@ struct SubjectFrames {
   const Plane<glm::vec2>* vectors(std::size_t i, std::size_t to) const {
     if (to < first || to > last) return nullptr;
     const bool future = to > i;
+    const SubjectFrames& there = led_to(i, to);
     const Plane<glm::vec2>&stored = future ? present(i).forward : present(i).motion,
-          &back = future ? present(to).motion : present(to).forward;
-    const bool tests = repair.mode != RepairMotion::off;
+          &back = future ? there.present(to).motion : there.present(to).forward;
+    const bool tests = repair.mode != RepairMotion::off && !further;
     if (stored.empty() && back.empty()) return nullptr;
     if (!stored.empty() && !tests && (back.empty() || !(parameters.return_tolerance > 0))) return &stored;
     Plane<glm::vec2>& made = future ? memory[i].forward : memory[i].backward;
     if (!made.empty()) return &made;
     if (stored.empty()) {
-      made = opposite_vectors(bare(i), bare(to), tests ? *vectors(to, i) : back, test, kRoundTrip, workers);
+      made = opposite_vectors(bare(i), there.bare(to), tests ? *vectors(to, i) : back, test, kRoundTrip, workers);
       return &made;
     }
     Plane<glm::vec2> own = stored.clone();
@@ -69,7 +94,7 @@ struct SubjectFrames {
       said = repair_motion(own, seen(i), seen(to), back, resting, repair, workers);
     }
     if (!back.empty() && parameters.return_tolerance > 0) {
-      made = trusted_vectors(bare(i), own, bare(to), back, test, parameters.return_tolerance, workers);
+      made = trusted_vectors(bare(i), own, there.bare(to), back, test, parameters.return_tolerance, workers);
       keep_repaired(made, own, said, workers);
     } else {
       made = std::move(own);
@@ -79,6 +104,7 @@ struct SubjectFrames {
 
   GatherSource source(std::size_t i) const {
     GatherSource s = bare(i);
+    if (!is_there(i)) return s;
     if (i > first) s.backward = vectors(i, i - 1);
     if (i < last) s.forward = vectors(i, i + 1);
     const auto made = memory.find(i);
@@ -100,8 +126,10 @@ struct SubjectFrames {
     const auto rank = [&](std::size_t k) {
       return k > resolved ? 2 * (k - resolved) : k == resolved ? 0 : 2 * (resolved - k) - 1;
     };
+    if (!is_there(i)) return false;
     for (std::size_t k = begin; k <= end && print(i) != 0; ++k)
-      if (print(k) == print(i) && present(k).jitter == present(i).jitter && rank(k) < rank(i)) return true;
+      if (is_there(k) && print(k) == print(i) && present(k).jitter == present(i).jitter && rank(k) < rank(i))
+        return true;
     return false;
   }
 };
@@ -138,6 +166,7 @@ void make_light(const std::vector<SubjectFrames>& samples, std::size_t i, const 
   const Accumulated made = gather(sources(samples, begin, end, i), i - begin, pilot, any.test, {}, any.workers);
   const Plane<glm::vec4>& picture = made.history.color;
   for (const SubjectFrames& frames : samples) {
+    if (!frames.is_there(i)) continue;
     Plane<float>& light = frames.memory[i].light;
     light = local_light(picture, frames.present(i), frames.test, parameters.gain_window, frames.workers);
     follow_sudden_light(light, picture, frames.present(i), frames.test, parameters.gain_window, frames.workers);
@@ -156,19 +185,35 @@ void check_size(const SourceFrame& frame, const Window& window) {
                                               " on an edge; crop it, or give --accumulator recursive");
 }
 
+/// The most further samples that one of these frames has.
+std::size_t most_further(const FrameWindow& window, std::size_t output, std::size_t first, std::size_t last) {
+  std::size_t most = 0;
+  for (std::size_t i = first; i <= last; ++i)
+    if (output < window[i].extras.size()) most = std::max(most, window[i].extras[output].size());
+  return most;
+}
+
 }  // namespace
 
-Accumulated gather_frame(const FrameWindow& window, std::span<const std::size_t> subjects, std::size_t index,
-                         std::size_t first, std::size_t last, const GatherParameters& parameters,
+Accumulated gather_frame(const FrameWindow& window, std::size_t output, std::span<const std::size_t> subjects,
+                         std::size_t index, std::size_t first, std::size_t last, const GatherParameters& parameters,
                          const RepairParameters& repair, std::vector<GatherMemory>& memory,
                          const DiagnosticsWanted& wanted, Workers& workers) {
-  memory.resize(subjects.size());
+  const std::size_t all = subjects.size() + most_further(window, output, first, last);
+  if (memory.size() < all) memory.resize(all);
+  for (GatherMemory& frames : memory)
+    std::erase_if(frames, [&](const auto& entry) { return entry.first < first || entry.first > last; });
   std::vector<SubjectFrames> samples;
+  samples.reserve(all);  // they point to the first of them
   const SurfaceTest test = surface_test(window[index].presents[subjects.front()]);
-  for (std::size_t s = 0; s < subjects.size(); ++s) {
-    for (std::size_t i = first; i <= last; ++i) check_size(window[i], window[i].presents[subjects[s]].color.window());
-    std::erase_if(memory[s], [&](const auto& entry) { return entry.first < first || entry.first > last; });
-    samples.push_back({window, subjects[s], s, first, last, parameters, repair, memory[s], test, workers});
+  for (std::size_t s = 0; s < all; ++s) {
+    const bool own = s < subjects.size();
+    const std::size_t subject = own ? subjects[s] : subjects.front();
+    for (std::size_t i = first; own && i <= last; ++i)
+      check_size(window[i], window[i].presents[subject].color.window());
+    const auto further = own ? std::nullopt : std::optional<std::size_t>(s - subjects.size());
+    samples.push_back({window, subject, s, further, output, s > 0 ? &samples.front() : nullptr, first, last, parameters,
+                       repair, memory[s], test, workers});
   }
   const std::size_t begin = back(index, parameters.reach, first), end = ahead(index, parameters.reach, last);
   if (parameters.gain)

@@ -30,11 +30,12 @@ using GatherMemory = std::map<std::size_t, GatherFrame>;
 
 /// Resolves the frame at `index` from the frames of `window` between `first` and `last`, all held; with a gain, the
 /// outermost frame on each side only serves the pilot of its neighbor. Several subjects are samples of the same pixels:
-/// all of them make one result. `memory` has one entry for each. Vectors are tested and repaired
+/// all of them make one result, and the further samples that the frames have of `output`, whose subjects they are, with
+/// them. `memory` has one entry for each subject, then for each further sample. Vectors are tested and repaired
 /// as far as asked for, once for each frame and direction; memory[s][index].backward_said tells of those to the frame
 /// before.
-Accumulated gather_frame(const FrameWindow& window, std::span<const std::size_t> subjects, std::size_t index,
-                         std::size_t first, std::size_t last, const GatherParameters& parameters,
+Accumulated gather_frame(const FrameWindow& window, std::size_t output, std::span<const std::size_t> subjects,
+                         std::size_t index, std::size_t first, std::size_t last, const GatherParameters& parameters,
                          const RepairParameters& repair, std::vector<GatherMemory>& memory,
                          const DiagnosticsWanted& wanted, Workers& workers);
 

@@ -5,9 +5,12 @@
 namespace varve {
 namespace {
 
-std::vector<std::string> files_of(const InputSequence& input, int frame) {
-  std::vector<std::string> paths = {input.color.path(frame)};
-  for (const SequencePattern& role : input.roles) paths.push_back(role.path(frame));
+std::vector<std::string> files_of(const InputWatch& watch, int frame) {
+  std::vector<std::string> paths = {watch.input.color.path(frame)};
+  for (const SequencePattern& role : watch.input.roles) paths.push_back(role.path(frame));
+  if (const auto extra = watch.extras.frames.find(frame); extra != watch.extras.frames.end())
+    for (const ExtraCrop& crop : extra->second)
+      if (crop.path != paths.back()) paths.push_back(crop.path);  // samples of one file follow each other
   return paths;
 }
 
@@ -16,7 +19,7 @@ std::vector<std::string> files_of(const InputSequence& input, int frame) {
 std::optional<std::string> changed_file(const InputWatch& watch, int frame) {
   const auto known = watch.frames.find(frame);
   if (known == watch.frames.end()) return std::nullopt;
-  const std::vector<std::string> paths = files_of(watch.input, frame);
+  const std::vector<std::string> paths = files_of(watch, frame);
   for (std::size_t i = 0; i < paths.size(); ++i)
     if (identity_of(paths[i]) != known->second.files[i]) return paths[i];
   return std::nullopt;
@@ -34,7 +37,7 @@ void check_unchanged(const InputWatch& watch, int frame) {
 
 std::uint64_t print_of(InputWatch& watch, int frame) {
   if (const auto known = watch.frames.find(frame); known != watch.frames.end()) return known->second.print;
-  const std::vector<std::string> paths = files_of(watch.input, frame);
+  const std::vector<std::string> paths = files_of(watch, frame);
   // Twice: a writer that renames its file into place is done with it.
   for (bool again = true;; again = false) {
     WatchedFrame seen{{}, kEmptyPrint};

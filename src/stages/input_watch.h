@@ -9,19 +9,21 @@
 
 #include "base/error.h"
 #include "exr/file_print.h"
+#include "plan/extra_samples.h"
 #include "plan/probe.h"
 
 namespace varve {
 
 /// The files of one frame as they were when they were first looked at.
 struct WatchedFrame {
-  std::vector<FileIdentity> files;  ///< of the color and of each role
+  std::vector<FileIdentity> files;  ///< of the color, of each role, and of further samples
   std::uint64_t print = 0;          ///< of the contents of all of them
 };
 
 /// By frame; a few dozen bytes each.
 struct InputWatch {
   const InputSequence& input;
+  const ExtraSamples& extras;
   std::map<int, WatchedFrame> frames = {};
 };
 

@@ -173,6 +173,10 @@ std::string describe_parameters(const ResolveJob& job, const SequenceInfo& info,
     text += encoding;
   }
   for (const std::string& aov : job.request.aovs) text += " aov=" + aov;
+  if (std::find(job.request.aovs.begin(), job.request.aovs.end(), "evaluation") != job.request.aovs.end())
+    text += " want-samples=" + json_number(job.rerender.want_samples) +
+            " want-noise=" + json_number(job.rerender.want_noise);
+  if (!job.extra_list.empty()) text += " extra-list=" + std::filesystem::path(job.extra_list).filename().string();
   if (job.request.diagnostics_apart) text += " diagnostics=apart";
   if (!job.request.keep_channels) text += " keep=none";
   if (job.compression) text += std::string(" compression=") + name_of(*job.compression);
@@ -269,6 +273,10 @@ void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& sch
     outputs.insert(canonical(path));
   };
   check_file(job.report, "report", "--report");
+  for (const std::string& list : job.rerender.files) check_file(list, "list", "--rerender");
+  if (!job.rerender.files.empty() && job.resume)
+    throw Failure(ExitCode::usage,
+                  "--rerender looks at every frame, and --resume skips those that are done; leave one of them out");
   check_file(job.state_out, "state file", "--state-out");
 }
 
@@ -278,6 +286,7 @@ std::vector<std::string> output_folders(const ResolveJob& job) {
   if (!job.preview_folder.empty()) folders.insert(job.preview_folder);
   for (const std::string& file : {job.report, job.state_out})
     if (!file.empty()) folders.insert(folder_of(file));
+  for (const std::string& list : job.rerender.files) folders.insert(folder_of(list));
   return {folders.begin(), folders.end()};
 }
 

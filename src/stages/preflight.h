@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "plan/extra_samples.h"
 #include "plan/resolve_job.h"
 #include "stages/cameras_around.h"
 

@@ -76,8 +76,8 @@ FollowedFrames follow_frames(const ResolveJob& job, const std::vector<int>& fram
 MotionReport probe_motion(const ResolveJob& job, const std::vector<int>& frames, const MotionProbe& probe,
                           Workers& workers);
 
-/// Headers of a frame with the vectors that names or options tell; none where they do not fit together. `refusal` is the
-/// sentence that refuses vectors whose meaning nothing tells: the pixels may.
+/// Headers of a frame with the vectors that names or options tell; none where they do not fit together. `refusal` is
+/// the sentence that refuses vectors whose meaning nothing tells: the pixels may.
 std::optional<FrameHeaders> told_by_names(const ResolveJob& job, int frame, const JitterSource& jitter,
                                           std::string* refusal = nullptr);
 

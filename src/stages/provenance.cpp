@@ -1,5 +1,6 @@
 #include "stages/provenance.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
@@ -34,7 +35,7 @@ std::vector<UsedFrame> frames_used(const std::vector<ScheduledFrame>& schedule, 
   return frames;
 }
 
-Provenance provenance_of(const std::vector<UsedFrame>& used) {
+Provenance provenance_of(const std::vector<UsedFrame>& used, const std::string& extra) {
   std::vector<int> frames;
   std::uint64_t print = kEmptyPrint;
   for (const UsedFrame& u : used) {
@@ -43,7 +44,22 @@ Provenance provenance_of(const std::vector<UsedFrame>& used) {
   }
   std::array<char, 17> hex{};
   std::snprintf(hex.data(), hex.size(), "%016llx", static_cast<unsigned long long>(print));
-  return {format_frame_list(frames), hex.data()};
+  return {format_frame_list(frames), hex.data(), extra};
+}
+
+std::string extras_used(const ExtraSamples& extras, const std::vector<ScheduledFrame>& schedule, std::size_t index,
+                        const FrameReach& reach) {
+  const auto [first, last] = span_around(schedule, index, reach);
+  std::vector<int> frames;
+  std::string names;
+  for (std::size_t i = first; i <= last; ++i)
+    if (const std::string text = extra_files_text(extras, schedule[i].frame); !text.empty()) {
+      frames.push_back(schedule[i].frame);
+      names += text + ",";
+    }
+  if (names.empty()) return "";
+  return std::to_string(std::count(names.begin(), names.end(), ',')) + " files of frames " + format_frame_list(frames) +
+         ", " + hash_of(names);
 }
 
 }  // namespace varve

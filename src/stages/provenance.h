@@ -21,7 +21,13 @@ std::vector<UsedFrame> frames_used(const std::vector<ScheduledFrame>& schedule, 
 struct Provenance {
   std::string frames;  ///< as a frame list
   std::string inputs;  ///< print over frame numbers and contents, 16 hexadecimal digits
+  std::string extra;   ///< extras_used()
 };
-Provenance provenance_of(const std::vector<UsedFrame>& used);
+Provenance provenance_of(const std::vector<UsedFrame>& used, const std::string& extra = "");
+
+/// The files of further samples that schedule[index] is made from: their number, their frames, and a hash of their
+/// names; "" without any. What they hold is in the print of their frames.
+std::string extras_used(const ExtraSamples& extras, const std::vector<ScheduledFrame>& schedule, std::size_t index,
+                        const FrameReach& reach);
 
 }  // namespace varve

@@ -38,7 +38,13 @@ Setup set_up(const SettledLayers& ordered) {
           {},
           {},
           {},
+          {},
+          {},
           {}};
+  s.measured = s.aovs;
+  if (!job.rerender.files.empty()) s.measured.push_back(find_aov("evaluation"));
+  s.extras = find_extra_samples(job, s.info, s.jitter, frames_in_reach(job, s.info));
+  s.plan.notes.insert(s.plan.notes.end(), s.extras.notes.begin(), s.extras.notes.end());
   s.gather.filter = job.parameters.recursive.sample_filter;
   s.gather.return_tolerance = job.parameters.two_sided.return_tolerance;
   if (!job.state_in.empty()) s.before = read_state_head(job.state_in);

@@ -23,7 +23,9 @@ struct Setup {
   std::string parameters, hash;
   FrameReach reach;
   GatherParameters gather;
-  std::vector<const Aov*> aovs;  ///< asked for
+  std::vector<const Aov*> aovs;      ///< asked for
+  std::vector<const Aov*> measured;  ///< these, and what a list of renders is made from
+  ExtraSamples extras;
   std::optional<ColorConversion> into_working_space, out_of_working_space;
   std::optional<DisplayTransform> display;
   std::optional<StateHead> before;  ///< of --state-in

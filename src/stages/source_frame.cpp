@@ -2,26 +2,39 @@
 
 #include <utility>
 
+#include "samples/add_samples.h"
 #include "stages/check_same_subjects.h"
 #include "stages/combine_presents.h"
 #include "stages/place_samples.h"
+#include "stages/read_extras.h"
 
 namespace varve {
 namespace {
 
-/// What cameras have to say: planar depth, and vectors.
-void use_cameras(SourceFrame& source, std::vector<Present>& presents, const SourceOptions& options,
-                 const NeighborFrames& neighbors, Workers& workers) {
+/// What cameras have to say of subject `k`: planar depth, and vectors.
+void use_cameras(const SourceFrame& source, Present& present, std::size_t k, const SourceOptions& options,
+                 const NeighborFrames& neighbors, CameraVectors& counts, Workers& workers) {
   const MotionParameters& motion = options.job.parameters.motion;
-  for (std::size_t k = 0; k < presents.size(); ++k) {
-    Present& present = presents[k];
-    const CamerasAround& cameras = source.cameras[k];
-    if (motion.depth_kind == DepthKind::ray && cameras.here && !present.depth.empty())
-      ray_to_planar_depth(present.depth, present.jitter.value_or(glm::dvec2(0)), *cameras.here, workers);
-    move_by_camera(present, source.headers.subjects[k], cameras, neighbors, motion, options.plan.use_forward,
-                   source.by_camera, workers);
-    if (!options.plan.use_depth) present.depth = {};  // read for the cameras only
-  }
+  const CamerasAround& cameras = source.cameras[k];
+  if (motion.depth_kind == DepthKind::ray && cameras.here && !present.depth.empty())
+    ray_to_planar_depth(present.depth, present.jitter.value_or(glm::dvec2(0)), *cameras.here, workers);
+  move_by_camera(present, source.headers.subjects[k], cameras, neighbors, motion, options.plan.use_forward, counts,
+                 workers);
+  if (!options.plan.use_depth) present.depth = {};  // read for the cameras only
+}
+
+/// What is read of a frame's files, besides what is only passed on.
+ChannelNeeds needs_of(const SourceOptions& options) {
+  const Plan& plan = options.plan;
+  return {.depth = plan.use_depth || plan.use_cameras,
+          .motion = plan.use_motion,
+          .forward = plan.use_forward,
+          .id = plan.use_id,
+          .normal = plan.use_normal,
+          .reactive = plan.use_reactive,
+          .responsive = plan.use_responsive,
+          .rule = options.job.roles.combine_layers.rule,
+          .show_combined = options.show_combined};
 }
 
 }  // namespace
@@ -49,20 +62,9 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, const Nei
   source.headers = read_frame_headers(options.job.input, frame, options.job.roles, options.jitter, options.cameras);
   check_same_subjects(options.info.first, source.headers, plan);
   DeepFrame deep;
-  source.pixels = in_frame(frame, [&] {
-    return read_files(source.headers,
-                      {.depth = plan.use_depth || plan.use_cameras,
-                       .motion = plan.use_motion,
-                       .whole_parts = options.job.request.keep_channels && options.keep_pixels,
-                       .forward = plan.use_forward,
-                       .id = plan.use_id,
-                       .normal = plan.use_normal,
-                       .reactive = plan.use_reactive,
-                       .responsive = plan.use_responsive,
-                       .rule = options.job.roles.combine_layers.rule,
-                       .show_combined = options.show_combined},
-                      deep, workers);
-  });
+  ChannelNeeds needs = needs_of(options);
+  needs.whole_parts = options.job.request.keep_channels && options.keep_pixels;
+  source.pixels = in_frame(frame, [&] { return read_files(source.headers, needs, deep, workers); });
   const ReadOptions read{.motion = options.job.parameters.motion,
                          .use_depth = plan.use_depth || plan.use_cameras,
                          .use_motion = plan.use_motion,
@@ -89,13 +91,28 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, const Nei
   if (plan.use_cameras) {
     source.cameras =
         cameras_around(source.headers, neighbors, options.job, options.jitter, options.cameras, options.camera_track);
-    in_frame(frame, [&] { use_cameras(source, presents, options, neighbors, workers); });
+    in_frame(frame, [&] {
+      for (std::size_t k = 0; k < presents.size(); ++k)
+        use_cameras(source, presents[k], k, options, neighbors, source.by_camera, workers);
+    });
   }
+  source.extras = in_frame(frame, [&] {
+    const auto move = [&](Present& present, std::size_t subject) {
+      CameraVectors not_counted;
+      if (plan.use_cameras) use_cameras(source, present, subject, options, neighbors, not_counted, workers);
+    };
+    return read_extras(options, source.headers, presents, read, needs_of(options), move, workers);
+  });
   // The gather filters by itself, from true positions.
   const Parameters& p = options.job.parameters;
   const SampleFilter filter = p.accumulator == Accumulator::gather ? SampleFilter::none : p.recursive.sample_filter;
   source.presents = combine_presents(source.headers, std::move(presents),
                                      {options.job.roles, options.show_combined, filter}, workers);
+  if (p.accumulator != Accumulator::gather) {
+    for (std::size_t k = 0; k < source.extras.size(); ++k)
+      source.presents[k] = add_samples(std::move(source.presents[k]), source.extras[k], filter, workers);
+    source.extras.clear();
+  }
   if (options.keep_pixels)
     divide_passed_vectors(source.headers, source.pixels.front(), workers);
   else

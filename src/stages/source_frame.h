@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "motion/repair_motion.h"
+#include "plan/extra_samples.h"
 #include "plan/resolve_job.h"
 #include "stages/cameras_around.h"
 #include "stages/move_by_camera.h"
@@ -16,9 +17,11 @@ namespace varve {
 /// One frame as the accumulators see it.
 struct SourceFrame {
   FrameHeaders headers;
-  FileSet pixels;                      ///< as stored; empty where the frame is read again when it is written
-  std::vector<Present> presents;       ///< one for each of accumulated_subjects(): a subject, or several combined
-  std::vector<CamerasAround> cameras;  ///< one for each of headers.subjects; empty without
+  FileSet pixels;                            ///< as stored; empty where the frame is read again when it is written
+  std::vector<Present> presents;             ///< one for each of accumulated_subjects(): a subject, or several combined
+  std::vector<CamerasAround> cameras;        ///< one for each of headers.subjects; empty without
+  std::vector<std::vector<Present>> extras;  ///< for each of headers.outputs further samples that are not in presents,
+                                             ///< each valid in some pixels only; empty where there are none
   CameraVectors by_camera;
   std::size_t vectors_bad = 0;        ///< vectors that cannot be used
   DeepCounts deep;                    ///< samples of deep parts that were flattened
@@ -52,6 +55,7 @@ struct SourceOptions {
   const JitterSource& jitter;
   const CameraSource& cameras;
   CameraTrack& camera_track;  ///< grows by frames that were not probed
+  const ExtraSamples& extras;
   const ColorConversion* into_working_space = nullptr;
   bool keep_pixels = false;    ///< SourceFrame::pixels stay, with all that is only passed through
   bool show_combined = false;  ///< Present::combined is asked for

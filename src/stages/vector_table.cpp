@@ -91,7 +91,8 @@ VectorTable inspect_vectors(const ResolveJob& job, const SequenceInfo& info, con
   reads.use_cameras = reads.use_cameras || repair_uses_cameras(info);
   const CameraSource cameras_given = parse_camera_source(job.camera);
   CameraTrack track = info.cameras;
-  const SourceOptions options{job, info, reads, jitter, cameras_given, track, nullptr, false, false};
+  const ExtraSamples no_extras;
+  const SourceOptions options{job, info, reads, jitter, cameras_given, track, no_extras, nullptr, false, false};
   RepairParameters parameters = job.parameters.repair;
   parameters.mode = RepairMotion::check;
   VectorTable table;

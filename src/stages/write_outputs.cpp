@@ -10,13 +10,15 @@ namespace varve {
 namespace {
 
 WriteOptions write_options(const Setup& s, const Provenance& provenance, const std::function<void()>& check) {
-  return {s.job.zip_level,
-          {{"varve:version", version()},
-           {"varve:parameters", s.parameters},
-           {"varve:hash", s.hash},
-           {"varve:frames", provenance.frames},
-           {"varve:inputs", provenance.inputs}},
-          check};
+  WriteOptions options{s.job.zip_level,
+                       {{"varve:version", version()},
+                        {"varve:parameters", s.parameters},
+                        {"varve:hash", s.hash},
+                        {"varve:frames", provenance.frames},
+                        {"varve:inputs", provenance.inputs}},
+                       check};
+  if (!provenance.extra.empty()) options.attributes.push_back({"varve:extra", provenance.extra});
+  return options;
 }
 
 }  // namespace

@@ -260,6 +260,7 @@ Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubje
   if (aov.name == "gain") fill(of(a.diagnostics.gain));
   if (aov.name == "removed") fill(of(a.diagnostics.removed));
   if (aov.name == "round-trip") fill(of(a.diagnostics.round_trip));
+  if (aov.name == "evaluation" && resolved.lacking) fill(of(*resolved.lacking));
   if (aov.name == "reject-future") fill(of(a.diagnostics.reject_future));
   const auto of_repair = [&](auto MotionRepair::*source) {
     if (!resolved.repair || (resolved.repair->*source).empty())
@@ -297,6 +298,7 @@ DiagnosticsWanted diagnostics_wanted(const std::vector<const Aov*>& aovs) {
     if (aov->name == "clip") wanted.clip = true;
     if (aov->name == "weight") wanted.weight = true;
     if (aov->name == "reject" || aov->name == "reject-future") wanted.reject = true;
+    if (aov->name == "evaluation") wanted.reject = wanted.gather = true;
     if (aov->name == "count-past" || aov->name == "count-future") wanted.counts = true;
     if (aov->filled_by == kByGather) wanted.gather = true;
   }

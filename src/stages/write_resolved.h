@@ -24,6 +24,7 @@ struct ResolvedSubject {
   const Plane<glm::vec4>* finished = nullptr;  ///< what is written, where that is not what the history keeps
   const Plane<float>* difference = nullptr;    ///< to what the other --layers mode gives; only where it is asked for
   const MotionRepair* repair = nullptr;        ///< what was said of the vectors; null or without planes: nothing
+  const Plane<float>* lacking = nullptr;       ///< samples; only where the plane `evaluation` is asked for
 
   const Plane<glm::vec4>& color() const {
     return finished && !finished->empty() ? *finished : accumulated->history.color;
