@@ -60,9 +60,9 @@ Container encode_by_library(const Part& part, const std::vector<const RawPlane*>
   if (descriptor < 0)
     throw Failure(ExitCode::output, std::string("cannot compress a part in memory: ") + std::strerror(errno));
   try {
-    Imf::setGlobalThreadCount(threads);
+    Imf::setGlobalThreadCount(library_threads(threads));
     MemoryStream stream(descriptor);
-    Imf::OutputFile file(stream, header_of(part), threads);
+    Imf::OutputFile file(stream, header_of(part), library_threads(threads));
     Imf::FrameBuffer frame;
     for (std::size_t c = 0; c < planes.size(); ++c) frame.insert(part.channels[c].name, library_slice(*planes[c]));
     file.setFrameBuffer(frame);

@@ -58,8 +58,8 @@ void read_part_by_library(const FileHeader& header, int part, std::vector<RawPla
                                name_of(wanted.compression) +
                                " pixels, so that the OpenEXR library broke down over them; render or copy it again");
   try {
-    Imf::setGlobalThreadCount(threads);
-    Imf::MultiPartInputFile file(header.path.c_str(), threads);
+    Imf::setGlobalThreadCount(library_threads(threads));
+    Imf::MultiPartInputFile file(header.path.c_str(), library_threads(threads));
     Imf::FrameBuffer frame;
     for (std::size_t c = 0; c < planes.size(); ++c)
       if (!planes[c].empty()) frame.insert(wanted.channels[c].name, library_slice(planes[c]));

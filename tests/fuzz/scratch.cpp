@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cstdlib>
 #include <string>
 
 namespace varve::fuzz {
@@ -13,7 +14,8 @@ struct Scratch {
   fs::path folder;
   Scratch() {
     std::error_code ignored;
-    const fs::path shm = "/dev/shm";
+    const char* asked = std::getenv("VARVE_FUZZ_FOLDER");
+    const fs::path shm = asked ? asked : "/dev/shm";
     folder = (fs::is_directory(shm, ignored) ? shm : fs::temp_directory_path()) /
              ("varve-fuzz-" + std::to_string(::getpid()));
     fs::create_directories(folder);

@@ -5,7 +5,8 @@
 
 namespace varve::fuzz {
 
-/// In memory where there is such a place; gone with the process.
+/// Below the folder that VARVE_FUZZ_FOLDER names, or in memory where there is such a place; gone with the process,
+/// unless it crashes.
 const std::filesystem::path& scratch();
 
 }  // namespace varve::fuzz

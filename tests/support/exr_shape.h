@@ -36,7 +36,9 @@ struct ExrShape {
   std::size_t table_at = 0, data_at = 0;  ///< of the chunk tables and the first chunk; 0 if the walk did not get there
   std::vector<std::size_t> chunks;        ///< where each chunk begins, in the order of the tables
 
-  std::vector<const ExrField*> of(ExrFieldKind kind) const {
+  /// They point into this, which therefore has to have a name.
+  std::vector<const ExrField*> of(ExrFieldKind kind) const&& = delete;
+  std::vector<const ExrField*> of(ExrFieldKind kind) const& {
     std::vector<const ExrField*> found;
     for (const ExrField& field : fields)
       if (field.kind == kind) found.push_back(&field);
