@@ -212,18 +212,22 @@ Shape ellipsoid_shape(const std::vector<Sample>& samples, const Statistics& s, d
     for (std::size_t k = 0; k < 3; ++k) sum += axes.direction[i][k] * (c[k] - mean[k]);
     return sum;
   };
+  // In radii; a black patch has none at all, and is one color.
+  const auto out = [along, radius](const Color& c, std::size_t i) {
+    const double way = along(c, i);
+    return way == 0 ? 0.0 : way / radius[i];
+  };
   Shape shape;
   shape.mean = shape.center = mean;
   shape.inside = [=](const Color& c) {
     double sum = 0;
-    for (std::size_t i = 0; i < 3; ++i) sum += std::pow(along(c, i) / radius[i], 2);
+    for (std::size_t i = 0; i < 3; ++i) sum += std::pow(out(c, i), 2);
     return sum <= 1 && std::abs(c[3] - mean[3]) <= alpha;
   };
   shape.nearest = [=](const Color& c) {
     // The multiplier by bisection.
     double low = 0, high = 0, sum = 0;
-    for (std::size_t i = 0; i < 3; ++i)
-      high += radius[i] * std::abs(along(c, i)), sum += std::pow(along(c, i) / radius[i], 2);
+    for (std::size_t i = 0; i < 3; ++i) high += radius[i] * std::abs(along(c, i)), sum += std::pow(out(c, i), 2);
     Color n = c;
     n[3] = std::clamp(c[3], mean[3] - alpha, mean[3] + alpha);
     if (sum <= 1) return n;
@@ -236,7 +240,8 @@ Shape ellipsoid_shape(const std::vector<Sample>& samples, const Statistics& s, d
     for (std::size_t k = 0; k < 3; ++k) {
       n[k] = mean[k];
       for (std::size_t i = 0; i < 3; ++i)
-        n[k] += axes.direction[i][k] * along(c, i) * radius[i] * radius[i] / (radius[i] * radius[i] + high);
+        if (radius[i] > 0)
+          n[k] += axes.direction[i][k] * along(c, i) * radius[i] * radius[i] / (radius[i] * radius[i] + high);
     }
     return n;
   };

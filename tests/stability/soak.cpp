@@ -85,7 +85,8 @@ Soaked soak(const std::string& name, const Settings& s, Sway sway, int frames, W
     if (f >= frames - frames / 10) soaked.at_end = d <= soaked.at_end ? soaked.at_end : d;
   }
   // A step of float in each frame, forgotten by alpha; the sharp filters and the clip pass on a little more than that.
-  soaked.bound = 16 * 6e-8 / std::max(0.01, s.recursive.alpha);
+  // Where a box clips, its one way for all channels costs more now and then (twins.cpp), and is forgotten as well.
+  soaked.bound = s.rectify.box == Box::none ? 16 * 6e-8 / std::max(0.01, s.recursive.alpha) : 5e-4;
   return soaked;
 }
 

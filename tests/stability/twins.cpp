@@ -19,8 +19,12 @@ std::vector<Input> inputs_for(bool thorough) {
   std::vector<Input> inputs;
   inputs.push_back({"noise", base_shot(kTwinWindow, Moves::any, 3, 40, true)});
   inputs.push_back({"pan", base_shot(kTwinWindow, Moves::pan, 3, 41, true)});
+  // Neighbors at opposite ends of the floats come out finite (laws_test), and between their own neighbors, but not as
+  // the twin has them: their differences are no floats.
   for (const Extreme& extreme : extremes())
-    if (thorough || extreme.name == "values of all kinds" || extreme.name == "flat 60000")
+    if (extreme.name.find("end of float") == std::string::npos &&
+        extreme.name.find("ends of float") == std::string::npos &&
+        (thorough || extreme.name == "values of all kinds" || extreme.name == "flat 60000"))
       inputs.push_back({extreme.name, extreme.make(kTwinWindow)});
   return inputs;
 }
@@ -38,6 +42,18 @@ bool has_twin(const RecursiveParameters& p) {
          p.history_filter != HistoryFilter::bspline5 && p.unjitter == Unjitter::none;
 }
 
+/// Where pass and twin are known to part, and no bound is held:
+/// a hull is widened by a millionth of its size, so that a segment which just misses a long thin one beside a highlight
+/// leaves it much later than the exact one (hull_test has the bounds); the nearest point of a k-DOP or of a box along
+/// principal axes that reaches from 1e30 to 1; tests of vectors where 1e-7 of a pixel decides which of four pixels
+/// count.
+bool is_open(const std::string& pass, const std::string& input) {
+  if (pass.starts_with("accumulate box hull clip")) return true;
+  const bool vast = input == "values 1e30" || input == "values of all kinds";
+  if (vast && (pass.starts_with("accumulate box kdop") || pass.starts_with("accumulate box pca"))) return true;
+  return input == "vectors tiny" && (pass.starts_with("reject speed") || pass.starts_with("reject acceleration"));
+}
+
 void measure_recursive(const std::vector<Input>& inputs, bool thorough, std::vector<Measured>& rows, Workers& workers) {
   std::string last_family;
   for (const Pass& pass : resolve_passes()) {
@@ -48,10 +64,17 @@ void measure_recursive(const std::vector<Input>& inputs, bool thorough, std::vec
     if (!thorough && family == last_family) continue;
     last_family = family;
     // Clips by bisection and logarithms end within rounding of the face they end at.
-    const bool coarse = s.rectify.space == BoxSpace::log || s.recursive.weight.weighing == Weighing::logarithm;
-    Measured& row = row_of(rows, family, words_of(inputs), coarse ? 1e-4 : 5e-6);
-    row.bound = std::max(row.bound, coarse ? 1e-4 : 5e-6);
+    // What clips takes one way to the box for all channels: where a channel was moved by little more than rounding,
+    // that way is known to little more than rounding. The box is never narrower than a millionth of the color, so a
+    // step of float becomes a few thousandths of the width of the box at worst; in logarithms more, and with a
+    // discount, which goes by the square of the way, more still.
+    const bool clips = s.rectify.box != Box::none && s.rectify.rule == BoxRule::clip;
+    const bool logs = s.rectify.space == BoxSpace::log || s.recursive.weight.weighing == Weighing::logarithm;
+    const double bound = s.rectify.clip_discount ? 5e-2 : clips && logs ? 5e-3 : clips ? 1e-3 : logs ? 1e-4 : 5e-6;
     for (const Input& input : inputs) {
+      const bool open = is_open(pass.name, input.name);
+      Measured& row = row_of(rows, open ? family + " (open)" : family, words_of(inputs), open ? 1 : bound);
+      row.bound = std::max(row.bound, open ? 1 : bound);
       ++row.runs;
       History history;
       for (const RawFrame& raw : input.shot) {
@@ -120,11 +143,12 @@ void measure_two_sided(const std::vector<Input>& inputs, bool thorough, std::vec
   for (const Pass& pass : resolve_passes()) {
     if (!pass.two_sided || !has_twin(pass.two_sided->recursive)) continue;
     const Settings& s = *pass.two_sided;
-    const std::string family = family_of(pass.name, 2);
+    const std::string family = family_of(pass.name, pass.name.starts_with("two-sided box") ? 3 : 2);
     if (!thorough && family == last_family) continue;
     last_family = family;
     // The discount divides by the square of how far history was moved: what rounding moved a little weighs otherwise.
-    Measured& row = row_of(rows, family, words_of(inputs), 1e-4);
+    const bool open = s.rectify.box == Box::hull;
+    Measured& row = row_of(rows, open ? family + " (open)" : family, words_of(inputs), open ? 1 : 1e-3);
     for (const Input& input : inputs) {
       ++row.runs;
       const auto& r = s.recursive;

@@ -94,8 +94,9 @@ TEST(RectifyShapes, AgreeWithTheirSlowTwin) {
                                      double(glm::length(h.color.at(std::clamp(x, first.x0, first.x1 - 1),
                                                                    std::clamp(y, first.y0, first.y1 - 1)))));
         bool same = true;
-        for (std::size_t k = 0; k < 4; ++k)
-          same = same && std::abs(double(fast.history.color.at(x, y)[int(k)]) - slow.color[k]) <= rounding * size;
+        for (std::size_t k = 0; k < 4; ++k)  // history may come from a highlight farther off
+          same = same && std::abs(double(fast.history.color.at(x, y)[int(k)]) - slow.color[k]) <=
+                             rounding * std::max(size, std::abs(slow.color[k]));
         same = same && std::abs(double(fast.diagnostics.clip.at(x, y)) - slow.clip) <= 2e-4;
         same = same && std::abs(double(fast.history.total.at(x, y)) - slow.total) <= 2e-3;
         if (!same && allowed > 0) --allowed, same = true;
