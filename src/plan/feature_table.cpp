@@ -257,7 +257,9 @@ constexpr Feature kFeatures[] = {
      "and others"},
     {beyond, 10, "", "A list of what to render again", Reach::planned, "--aov=reject shows where history is missing"},
     {beyond, 11, "", "The same bytes for any number of threads and any chunks", Reach::option,
-     "--threads; chunks under --accumulator=gather and two-sided, with --preroll under recursive"},
+     "--threads; chunks under --accumulator=gather and two-sided, under recursive with --state-out and --state-in; "
+     "within "
+     "a bound with --preroll"},
     {beyond, 12, "", "Speed against accuracy measured on the shot itself", Reach::option, "`varve measure`"},
     {beyond, 13, "", "Deep files put in order before layers are told apart", Reach::option,
      "a color that is deep, or that --layer names: volumes split, sorted, composited; motion of the winning sample"},

@@ -399,6 +399,13 @@ void write_state(const std::string& path, const StateHead& head, const std::vect
   file.commit();
 }
 
+bool is_free_for_state(const std::string& path) {
+  if (!identity_of(path).there) return true;
+  char magic[kMagic.size()];
+  return InputBytes(path).read_some(0, magic, sizeof magic) == sizeof magic &&
+         std::string_view(magic, sizeof magic) == kMagic;
+}
+
 StateHead read_state_head(const std::string& path) { return std::move(open_state(path).head); }
 
 SavedState read_state(const std::string& path) {

@@ -27,7 +27,8 @@ void redirect(const std::filesystem::path& path, int descriptor) {
 
 }  // namespace
 
-Running::Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder)
+Running::Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                 const std::function<void()>& before)
     : out_(fresh_path()), err_(fresh_path()) {
   std::vector<char*> argv;
   std::string program = VARVE_PROGRAM;
@@ -41,6 +42,7 @@ Running::Running(const std::vector<std::string>& arguments, const std::filesyste
     redirect(out_, STDOUT_FILENO);
     redirect(err_, STDERR_FILENO);
     if (chdir(folder.c_str()) != 0) _exit(127);
+    if (before) before();
     execv(program.c_str(), argv.data());
     _exit(127);
   }

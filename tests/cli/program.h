@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,9 @@ Outcome run_varve(const std::vector<std::string>& arguments, const std::filesyst
 /// A program that still runs, for signals.
 class Running {
  public:
-  Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+  /// `before` is called in the new process, before it becomes the program: limits, another user.
+  Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+          const std::function<void()>& before = {});
   ~Running();
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
