@@ -59,6 +59,17 @@ Running::~Running() {
 
 void Running::send(int signal) const { kill(process_, signal); }
 
+bool Running::stop() {
+  if (done_) return false;
+  kill(process_, SIGSTOP);
+  int status = 0;
+  waitpid(process_, &status, WUNTRACED);
+  if (WIFSTOPPED(status)) return true;
+  done_ = true;
+  status_ = status;
+  return false;
+}
+
 bool Running::finished() {
   if (!done_) done_ = waitpid(process_, &status_, WNOHANG) == process_;
   return done_;

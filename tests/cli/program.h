@@ -27,6 +27,7 @@ class Running {
   Running& operator=(const Running&) = delete;
 
   void send(int signal) const;
+  bool stop();      ///< SIGSTOP; returns when it stands still, false when it has ended before
   bool finished();  ///< does not wait
   Outcome wait();   ///< waits for the end
 

@@ -29,7 +29,7 @@ class StateCli : public SceneCli {
           << of << " " << name;
   }
 
-  /// Frames 1-7 in one run, and 1-3, 4, 5-7 by states: the same bytes.
+  /// Frames 1-5 in one run, and 1-2, 3, 4-5 by states: the same bytes.
   void expect_exact(const std::string& input, const Arguments& choices) const {
     std::string of;
     for (const std::string& choice : choices) of += choice + " ";
@@ -39,16 +39,16 @@ class StateCli : public SceneCli {
       ASSERT_EQ(outcome.code, 0) << of << outcome.err;
     };
     for (const char* old : {"whole", "part"}) fs::remove_all(folder / old);
-    run("whole", {"-f", "1-7"});
-    run("part", {"-f", "1-3", "--state-out", "a", "--threads", "1"});
-    run("part", {"-f", "4", "--state-in", "a", "--state-out", "b", "--threads", "3"});
-    run("part", {"-f", "5-7", "--state-in", "b"});
+    run("whole", {"-f", "1-5"});
+    run("part", {"-f", "1-2", "--state-out", "a", "--threads", "1"});
+    run("part", {"-f", "3", "--state-in", "a", "--state-out", "b", "--threads", "3"});
+    run("part", {"-f", "4-5", "--state-in", "b"});
     expect_same("part", "whole", of);
   }
 };
 
 TEST_F(StateCli, EveryRecursivePresetGoesOnExactly) {
-  synth("crossing", "1-7", {"--size", "40x23"});
+  synth("crossing", "1-5", {"--size", "32x19"});
   std::size_t tried = 0;
   for (const Preset& preset : presets()) {
     Arguments choices = {"-p", std::string(preset.name), "--aov", "all"};
@@ -62,7 +62,7 @@ TEST_F(StateCli, EveryRecursivePresetGoesOnExactly) {
 }
 
 TEST_F(StateCli, SoDoesEverythingThatRemembersMore) {
-  synth("crossing", "1-7", {"--size", "40x23"});
+  synth("crossing", "1-5", {"--size", "32x19"});
   const std::string input = "in/crossing.####.exr";
   const Arguments forward_only = {"--convention",       "varve", "--map",
                                   "motion.x=forward.x", "--map", "motion.y=forward.y",
@@ -76,12 +76,15 @@ TEST_F(StateCli, SoDoesEverythingThatRemembersMore) {
         forward_only,
         forward_only + Arguments{"--repair-motion", "on", "--camera-motion", "all"}})
     expect_exact(input, choices);
-  synth("panes", "1-7", {"--size", "40x23", "--layers"});
+}
+
+TEST_F(StateCli, SoDoLayersSamplesAndCompanions) {
+  synth("panes", "1-5", {"--size", "32x19", "--layers"});
   for (const Arguments& choices : {Arguments{"--layer", "fg,mid,bg", "--layers", "composite"},
                                    {"--layer", "fg,mid,bg", "--layers", "each"},
                                    {"--channels", "fg,bg"}})
     expect_exact("in/panes.####.exr", choices);
-  synth("fence", "1-7", {"--size", "40x23", "--samples", "2"});
+  synth("fence", "1-5", {"--size", "32x19", "--samples", "2"});
   for (const char* how : {"resolve", "each"}) expect_exact("in/fence.####.exr", {"--samples", how});
 }
 
