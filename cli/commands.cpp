@@ -87,6 +87,8 @@ std::vector<Command> command_table() {
        {{"varve resolve shot.####.exr -o out/shot.####.exr", "All frames on disk with the default preset."},
         {"varve resolve shot.####.exr -o out/shot.####.exr -f 101-150 --preroll 20 --resume",
          "One chunk of a farm job: 20 frames warm the history up, finished frames are skipped."},
+        {"varve resolve shot.####.exr -o out/shot.####.exr -f 101-150 --state-in 100.state --state-out 150.state",
+         "A chunk that goes on exactly from the one before, and leaves what the next one needs."},
         {"varve resolve shot.####.exr -o out/shot.####.exr --convention nuke --gamma 1.5 --aov count,clip",
          "Vectors as Nuke writes them, a wider box, two diagnostic planes beside the color."},
         {"varve resolve shot.####.exr -o out/shot.####.exr --rerender list.json --rerender-budget 0.5",

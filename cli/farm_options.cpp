@@ -37,8 +37,7 @@ void add_farm_options(std::vector<Option>& rows) {
   add({"resume", 0, "", kResolve, Tier::basic, group,
        "Skip frames whose output is complete and was made with the same parameters from the same frames. Frames that "
        "were "
-       "rendered again under the same names are noticed by their contents: headers, chunk tables, and the checksums of "
-       "ZIP chunks, or all bytes of chunks without.",
+       "rendered again under the same names are noticed by their contents, which are read for that.",
        flag([](auto& s) -> auto& { return s.job.resume; })});
   add({"wait", 0, "SECONDS", kResolve, Tier::advanced, group,
        "Wait for requested frames that are not there yet, or not complete, before the work begins. Gives up with exit "

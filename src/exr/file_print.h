@@ -15,11 +15,10 @@ struct FileIdentity {
 };
 FileIdentity identity_of(const std::string& path);
 
-/// FNV-1a, 64 bits, over what an OpenEXR file holds; the same wherever and whenever the file lies. Equal prints: the
-/// same headers, chunk tables and pixels. Of the chunks that zlib made (ZIP, ZIPS, PXR24) only the checksum is read
-/// that zlib put at their ends (RFC 1950: Adler-32 of all that is in them); of all others every byte. So a ZIP file
-/// costs its chunk table and a few bytes for each chunk, any other one reading it. What is damaged counts by its place
-/// in the file. Throws Failure(input) where the header cannot be read.
+/// FNV-1a, 64 bits, over the size of a file and the CRC-32 of each of its MiB: the same wherever and whenever the file
+/// lies. It costs reading the file. Less would not do: the checksums that zlib puts at the ends of ZIP chunks are taken
+/// of differences, and a thing that moves within a chunk leaves them as they are. Throws Failure(input) where the file
+/// cannot be read.
 std::uint64_t file_print(const std::string& path);
 
 /// Goes on with FNV-1a, eight bytes of a number, least first.

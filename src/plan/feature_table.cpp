@@ -261,7 +261,9 @@ constexpr Feature kFeatures[] = {
      "--rerender writes frames, windows and sample positions for renderers, --rerender-budget shares samples out, "
      "--extra takes back what was rendered; --aov=evaluation"},
     {beyond, 11, "", "The same bytes for any number of threads and any chunks", Reach::option,
-     "--threads; chunks under --accumulator=gather and two-sided, with --preroll under recursive"},
+     "--threads; chunks under --accumulator=gather and two-sided, under recursive with --state-out and --state-in; "
+     "within "
+     "a bound with --preroll"},
     {beyond, 12, "", "Speed against accuracy measured on the shot itself", Reach::option, "`varve measure`"},
     {beyond, 13, "", "Deep files put in order before layers are told apart", Reach::option,
      "a color that is deep, or that --layer names: volumes split, sorted, composited; motion of the winning sample"},

@@ -142,7 +142,7 @@ class Planner {
     std::string tests;
     const auto test = [&](bool asked, const std::string& text) {
       if (asked) tests += (tests.empty() ? "" : ", ") + text;
-      return asked && info_.frames.size() > 1;
+      return asked && has_others(info_);
     };
     plan_.use_normal = test(r.normal_angle > 0, "normals by " + short_number(r.normal_angle) + " degrees");
     if (test(r.id != IdTest::off, r.id == IdTest::soft ? "ids with soft edges" : "ids")) plan_.use_id = true;
@@ -152,7 +152,7 @@ class Planner {
                                  short_number(r.acceleration) + " px");
     constexpr std::array<const char*, 3> kThen = {"start over", "start over blurred", "converge faster"};
     if (tests.empty()) return add("rejection", false, "no further test asked for");
-    if (info_.frames.size() < 2) return add("rejection", false, "no history");
+    if (!has_others(info_)) return add("rejection", false, "no history");
     add("rejection", true, "pixels " + std::string(kThen[std::size_t(r.on_reject)]) + " where these differ: " + tests);
   }
 
@@ -164,7 +164,7 @@ class Planner {
                                       [](const Subject& s) { return s.reactive.has_value(); });
     const bool responsive = std::any_of(info_.first.subjects.begin(), info_.first.subjects.end(),
                                         [](const Subject& s) { return s.responsive.has_value(); });
-    const bool history = info_.frames.size() > 1;
+    const bool history = has_others(info_);
     plan_.use_reactive = history && reactive && w.reactive > 0;
     plan_.use_responsive = history && responsive;
     std::string by;
@@ -304,7 +304,7 @@ class Planner {
 
  private:
   // One frame, and none around it to look at.
-  bool stands_alone() const { return info_.frames.size() < 2 && parameters_.accumulator == Accumulator::recursive; }
+  bool stands_alone() const { return !has_others(info_) && parameters_.accumulator == Accumulator::recursive; }
 
   // " (2 of 3 layers)" when a pass does not concern all.
   std::string share(std::size_t count) const {

@@ -53,6 +53,7 @@ FrameHeaders read_frame_headers(const InputSequence& input, int frame, const Rol
 struct SequenceInfo {
   std::vector<int> frames;      ///< on disk (or asked for), ascending
   std::vector<int> gaps;        ///< missing between first and last
+  bool frames_beside = false;   ///< others than those asked for are made use of: set by who knows
   FrameHeaders first;           ///< the frame the plan is made from
   bool windows_move = false;    ///< a data window differs between frames
   bool windows_differ = false;  ///< display windows differ between frames
@@ -63,6 +64,9 @@ struct SequenceInfo {
   CameraTrack cameras;             ///< by frame
   std::vector<std::string> notes;  ///< channels that differ between frames, a jitter.csv beside the frames, ...
 };
+
+/// Whether there is a frame besides, so that there may be a history.
+inline bool has_others(const SequenceInfo& info) { return info.frames.size() > 1 || info.frames_beside; }
 
 /// Reads every header of the chosen frames (empty: all on disk). Throws Failure(input) when a file is missing or
 /// broken.

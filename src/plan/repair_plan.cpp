@@ -15,7 +15,7 @@ PlannedPass repair_pass(const SequenceInfo& info, const Parameters& parameters, 
   if (!plan.use_motion) return {name, false, "no vectors"};
   if (parameters.repair.mode == RepairMotion::off)
     return {name, false, "vectors are believed; --repair-motion check or on tests them"};
-  if (info.frames.size() < 2) return {name, false, "there is no other frame to test them against"};
+  if (!has_others(info)) return {name, false, "there is no other frame to test them against"};
   const auto any = [&](bool (*has)(const Subject&)) {
     return std::any_of(info.first.subjects.begin(), info.first.subjects.end(), has);
   };

@@ -214,7 +214,7 @@ void check_roles(const ResolveJob& job, const SequenceInfo& info) {
     if (info.frames.size() > 1 && !role.has_frame())
       throw Failure(ExitCode::usage, "'" + role.text() + "' is one file for " + std::to_string(info.frames.size()) +
                                          " frames; put the frame number in, as in motion.####.exr");
-  if (info.frames.size() < 2 || job.roles.convention == "none") return;
+  if (!has_others(info) || job.roles.convention == "none") return;
   const auto moves = [&](const Subject& s) { return s.backward || s.forward || is_moved_by_camera(info, s); };
   // A layer of several may be a still; a note of it says so.
   for (const ColorOutput& output : info.first.outputs)
@@ -278,6 +278,9 @@ void check_outputs(const ResolveJob& job, const std::vector<ScheduledFrame>& sch
     throw Failure(ExitCode::usage,
                   "--rerender looks at every frame, and --resume skips those that are done; leave one of them out");
   check_file(job.state_out, "state file", "--state-out");
+  if (!job.state_out.empty() && !is_free_for_state(job.state_out))
+    throw Failure(ExitCode::usage,
+                  "'" + job.state_out + "' is there and is no state file; give --state-out another name");
 }
 
 std::vector<std::string> output_folders(const ResolveJob& job) {

@@ -19,6 +19,8 @@ Setup set_up(const SettledLayers& ordered) {
   }
   CameraSource cameras = parse_camera_source(job.camera);
   SequenceInfo info = probe_sequence(job.input, job.frames, job.roles, jitter, cameras);
+  // A chunk of one frame has a history all the same.
+  info.frames_beside = !job.state_in.empty() || frames_in_reach(job, info).size() > 1;
   check_roles(job, info);
   Plan plan = make_plan(info, job.parameters, job.request, job.threads);
   if (job.find_cuts)

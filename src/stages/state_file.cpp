@@ -3,6 +3,7 @@
 #include <libdeflate.h>
 
 #include <cmath>
+#include <concepts>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -25,7 +26,7 @@ constexpr std::size_t kMostSubjects = 16384;
 constexpr std::int64_t kLargest = 1 << 21;  // pixels, of a coordinate: twice what images may have
 
 /// What an element of a plane is.
-enum class Element : std::uint8_t { float1 = 1, float2, float3, float4, uint32, byte, double2 };
+enum class Element : std::uint8_t { float1 = 1, float2, float3, float4, uint32, byte, double2, int32 };
 
 template <class T>
 constexpr Element element_of() {
@@ -36,6 +37,7 @@ constexpr Element element_of() {
   if constexpr (std::is_same_v<T, std::uint32_t>) return Element::uint32;
   if constexpr (std::is_same_v<T, std::uint8_t>) return Element::byte;
   if constexpr (std::is_same_v<T, glm::dvec2>) return Element::double2;
+  if constexpr (std::is_same_v<T, std::int32_t>) return Element::int32;
 }
 
 /// One piece of the file behind the head.
@@ -96,9 +98,10 @@ void rows_of(const std::string& name, const std::vector<std::uint8_t>& bytes, co
   const std::vector<std::span<const std::uint8_t>> rows = {bytes};
   if (!bytes.empty()) take(name, Window{0, 0, int(bytes.size()), 1}, rows);
 }
-template <class Take>
-void rows_of(const std::string& name, const glm::dvec2& pair, const Take& take) {
-  const std::vector<std::span<const glm::dvec2>> rows = {{&pair, 1}};
+template <class T, class Take>
+requires std::same_as<T, glm::dvec2> || std::same_as<T, std::int32_t>
+void rows_of(const std::string& name, const T& number, const Take& take) {
+  const std::vector<std::span<const T>> rows = {{&number, 1}};
   take(name, Window{0, 0, 1, 1}, rows);
 }
 
@@ -191,7 +194,7 @@ FrameCameras read_cameras(HeadCursor& cursor) {
 }
 
 constexpr std::uint64_t bytes_of(Element element) {
-  constexpr std::uint64_t sizes[] = {0, 4, 8, 12, 16, 4, 1, 16};
+  constexpr std::uint64_t sizes[] = {0, 4, 8, 12, 16, 4, 1, 16, 4};
   return sizes[std::size_t(element)];
 }
 
@@ -211,7 +214,7 @@ Record read_record(HeadCursor& cursor, const std::string& path) {
   record.name = cursor.text();
   const std::uint8_t element = cursor.number<std::uint8_t>();
   std::int64_t edges[4];
-  bool sane = element >= 1 && element <= std::uint8_t(Element::double2);
+  bool sane = element >= 1 && element <= std::uint8_t(Element::int32);
   for (std::int64_t& edge : edges) {
     edge = cursor.number<std::int32_t>();
     sane = sane && edge >= -kLargest && edge <= kLargest;
@@ -301,10 +304,12 @@ class Pieces {
     bytes.resize(place->record->window.pixels());
     read_all(*place, bytes.data(), bytes.size());
   }
-  void fill(const std::string& name, glm::dvec2& pair) {
-    if (const std::optional<Place> place = take(name, Element::double2)) {
+  template <class T>
+  requires std::same_as<T, glm::dvec2> || std::same_as<T, std::int32_t>
+  void fill(const std::string& name, T& number) {
+    if (const std::optional<Place> place = take(name, element_of<T>())) {
       if (place->record->window.pixels() != 1) damaged(path_, "is damaged");
-      read_all(*place, &pair, sizeof pair);
+      read_all(*place, &number, sizeof number);
     }
   }
   bool all_taken() const { return places_.empty(); }
@@ -397,6 +402,13 @@ void write_state(const std::string& path, const StateHead& head, const std::vect
   });
   file.append(block.data(), block.size());
   file.commit();
+}
+
+bool is_free_for_state(const std::string& path) {
+  if (!identity_of(path).there) return true;
+  char magic[kMagic.size()];
+  return InputBytes(path).read_some(0, magic, sizeof magic) == sizeof magic &&
+         std::string_view(magic, sizeof magic) == kMagic;
 }
 
 StateHead read_state_head(const std::string& path) { return std::move(open_state(path).head); }

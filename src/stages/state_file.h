@@ -40,6 +40,9 @@ struct SavedState {
 /// The file appears under its name when it is complete. Throws Failure(output).
 void write_state(const std::string& path, const StateHead& head, const std::vector<SubjectState>& subjects);
 
+/// Whether a state file stands there, or nothing: else it may be anything that must not be lost.
+bool is_free_for_state(const std::string& path);
+
 /// The head alone; the size of the file is checked, not its planes. Throws Failure(input) where the file is missing,
 /// cut off or damaged, Failure(inconsistent) where its format is of another version. The memory
 /// it takes is bounded by the size of the file.

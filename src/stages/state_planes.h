@@ -2,7 +2,9 @@
 // by. A member that is added to one of these structs needs its line here; a test counts them.
 #pragma once
 
+#include <array>
 #include <concepts>
+#include <cstddef>
 #include <string>
 #include <type_traits>
 
@@ -18,8 +20,8 @@ struct LeftOut {
   const char* why;
 };
 
-// visit(name, member) for every member: planes, vectors of planes, vectors of bytes, pairs of doubles, or one of the
-// structs below; visit(name, LeftOut) for what is not kept.
+// visit(name, member) for every member: planes, vectors of planes, vectors of bytes, pairs of doubles, ints, one of the
+// structs below or an array of them; visit(name, LeftOut) for what is not kept.
 
 template <class Visit>
 void visit_members(SameStruct<SeenPlanes> auto& seen, Visit&& visit) {
@@ -61,6 +63,11 @@ template <class T>
 concept HasMembers =
     SameStruct<T, SeenPlanes> || SameStruct<T, ForwardMemory> || SameStruct<T, History> || SameStruct<T, SubjectState>;
 
+template <class T>
+struct IsArray : std::false_type {};
+template <HasMembers T, std::size_t N>
+struct IsArray<std::array<T, N>> : std::true_type {};
+
 /// visit(name, leaf) for everything that is kept below `state`, with names such as "history/color".
 template <HasMembers State, class Visit>
 void visit_leaves(State& state, const std::string& prefix, const Visit& visit) {
@@ -68,6 +75,9 @@ void visit_leaves(State& state, const std::string& prefix, const Visit& visit) {
     using Member = std::remove_cvref_t<decltype(member)>;
     if constexpr (HasMembers<Member>)
       visit_leaves(member, prefix + name + "/", visit);
+    else if constexpr (IsArray<Member>::value)
+      for (std::size_t i = 0; i < member.size(); ++i)
+        visit_leaves(member[i], prefix + name + "/" + std::to_string(i) + "/", visit);
     else if constexpr (!std::same_as<Member, LeftOut>)
       visit(prefix + name, member);
   });

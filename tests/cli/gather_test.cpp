@@ -66,6 +66,20 @@ TEST_F(GatherCli, AnyPartOfTheSequenceResolvesToTheSameBytes) {
     }
 }
 
+TEST_F(GatherCli, ChunksAreExactAcrossCutsGapsAndMissingFrames) {
+  synth("crossing", "1-12", {"--size", "48x27"});
+  for (const int missing : {5, 9}) fs::remove(folder / ("in/crossing." + number(missing) + ".exr"));
+  for (const char* preset : {"draft", "two-sided"}) {
+    const Arguments choices = {"-p", preset, "--aov", "all", "--cuts", "3,7"};
+    for (const char* old : {"whole", "part"}) fs::remove_all(folder / old);
+    ASSERT_EQ(resolve_into("in/crossing.####.exr", "whole", choices, {}).code, 0);
+    for (const char* part : {"1-2", "3-6x3", "4", "7-8", "10-12"})
+      ASSERT_EQ(resolve_into("in/crossing.####.exr", "part", choices, {"-f", part}).code, 0);
+    EXPECT_EQ(files_below(folder / "part").size(), 10u);
+    expect_same_files("part", "whole");
+  }
+}
+
 TEST_F(GatherCli, AllPlanesAreFinite) {
   synth("crossing", "1-6");
   ASSERT_EQ(resolve("in/crossing.####.exr", "o", {"--aov", "all", "--reach", "3"}).code, 0);

@@ -43,7 +43,7 @@ void obey(const RunLimits& limits) {
 }  // namespace
 
 Running::Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                 const RunLimits& limits)
+                 const std::function<void()>& before)
     : out_(fresh_path()), err_(fresh_path()) {
   std::vector<char*> argv;
   std::string program = VARVE_PROGRAM;
@@ -57,7 +57,7 @@ Running::Running(const std::vector<std::string>& arguments, const std::filesyste
     redirect(out_, STDOUT_FILENO);
     redirect(err_, STDERR_FILENO);
     if (chdir(folder.c_str()) != 0) _exit(127);
-    obey(limits);
+    if (before) before();
     execv(program.c_str(), argv.data());
     _exit(127);
   }
@@ -74,6 +74,17 @@ Running::~Running() {
 
 void Running::send(int signal) const { kill(process_, signal); }
 
+bool Running::stop() {
+  if (done_) return false;
+  kill(process_, SIGSTOP);
+  int status = 0;
+  waitpid(process_, &status, WUNTRACED);
+  if (WIFSTOPPED(status)) return true;
+  done_ = true;
+  status_ = status;
+  return false;
+}
+
 bool Running::finished() {
   if (!done_) done_ = waitpid(process_, &status_, WNOHANG) == process_;
   return done_;
@@ -87,7 +98,7 @@ Outcome Running::wait() {
 
 Outcome run_varve(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                   const RunLimits& limits) {
-  return Running(arguments, folder, limits).wait();
+  return Running(arguments, folder, [&] { obey(limits); }).wait();
 }
 
 Folder::Folder() : path_(fresh_path()) { std::filesystem::create_directories(path_); }

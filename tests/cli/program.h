@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,12 +26,15 @@ Outcome run_varve(const std::vector<std::string>& arguments, const std::filesyst
 /// A program that still runs, for signals.
 class Running {
  public:
-  Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder, const RunLimits& limits = {});
+  /// `before` is called in the new process, before it becomes the program: limits, another user.
+  Running(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+          const std::function<void()>& before = {});
   ~Running();
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
 
   void send(int signal) const;
+  bool stop();      ///< SIGSTOP; returns when it stands still, false when it has ended before
   bool finished();  ///< does not wait
   Outcome wait();   ///< waits for the end
 

@@ -10,6 +10,7 @@
 #include "paths.h"
 #include "plan/preset.h"
 #include "progress.h"
+#include "report_fields.h"
 
 namespace varve::cli {
 namespace {
@@ -105,7 +106,7 @@ TEST(ProgressLine, NeverSaysTheWordThatQueuesLookFor) {
   FrameReport report;
   report.not_finite = report.vectors_bad = report.half_overflows = 3;
   report.restart = "cut";
-  for (const std::string& line : {frame_line(report, 1, 2), frame_json(report)})
+  for (const std::string& line : {frame_line(report, 1, 2), object_text(frame_fields(), report)})
     EXPECT_EQ(line.find("rror"), std::string::npos) << line;
 }
 
