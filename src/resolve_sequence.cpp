@@ -141,7 +141,8 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
   if (job.check_motion && s.plan.use_motion) check_vectors(job, s.info, events.warning, workers);
   std::vector<SubjectState> states(accumulated_subjects(s.info.first.outputs, s.info.first.subjects).size());
   std::set<std::string> told;
-  const bool recursive = job.parameters.accumulator == Accumulator::recursive;
+  const bool four = job.parameters.accumulator == Accumulator::subpixel;
+  const bool recursive = four || job.parameters.accumulator == Accumulator::recursive;
   CameraTrack camera_track = s.info.cameras;
   const SourceOptions source_options{s.job,
                                      s.info,
@@ -166,7 +167,9 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
   int total = 0, done = 0;
   for (const ScheduledFrame& scheduled : schedule) total += scheduled.write;
 
-  const AccumulatorOptions accumulator{job.parameters, s.gather, s.aovs};
+  const auto blur_table =
+      four ? blur_table_for(job.parameters.subpixel, job.parameters.recursive) : std::optional<BlurTable>();
+  const AccumulatorOptions accumulator{job.parameters, s.gather, s.aovs, blur_table};
   const bool gathers = job.parameters.accumulator == Accumulator::gather;
   std::optional<TwoSidedPass> two_sided;
   if (job.parameters.accumulator == Accumulator::two_sided)
@@ -205,7 +208,8 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
     std::vector<Resolved> resolved = two_sided ? accumulate_two_sided(*two_sided, i, source)
                                      : gathers
                                          ? accumulate_gather(accumulator, window, i, {first, last}, states, workers)
-                                         : accumulate_recursive(accumulator, source, scheduled, states, workers);
+                                     : four ? accumulate_subpixel_frame(accumulator, source, scheduled, states, workers)
+                                            : accumulate_recursive(accumulator, source, scheduled, states, workers);
     if (summary.stopped) break;
     hold_layers(source, resolved, workers);
     count(report, source, resolved, workers);

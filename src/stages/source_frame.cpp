@@ -87,9 +87,10 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, const Nei
         cameras_around(source.headers, neighbors, options.job, options.jitter, options.cameras, options.camera_track);
     in_frame(frame, [&] { use_cameras(source, presents, options, neighbors, workers); });
   }
-  // The gather filters by itself, from true positions.
+  // Who takes samples at their true positions filters by itself.
   const Parameters& p = options.job.parameters;
-  const SampleFilter filter = p.accumulator == Accumulator::gather ? SampleFilter::none : p.recursive.sample_filter;
+  const SampleFilter filter = p.accumulator == Accumulator::gather || p.accumulator == Accumulator::subpixel
+                                  ? SampleFilter::none : p.recursive.sample_filter;
   source.presents = combine_presents(source.headers, std::move(presents),
                                      {options.job.roles, options.show_combined, filter}, workers);
   if (options.keep_pixels)
