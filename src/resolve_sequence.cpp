@@ -173,7 +173,8 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
   std::vector<SubjectState> states(accumulated_subjects(s.info.first.outputs, s.info.first.subjects).size());
   if (before) states = continued_states(s, watch);
   std::set<std::string> told;
-  const bool recursive = job.parameters.accumulator == Accumulator::recursive;
+  const bool four = job.parameters.accumulator == Accumulator::subpixel;
+  const bool recursive = four || job.parameters.accumulator == Accumulator::recursive;
   CameraTrack camera_track = s.info.cameras;
   if (before) camera_track.emplace(before->last(), before->cameras);
   const SourceOptions source_options{s.job,
@@ -203,7 +204,9 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
   int total = 0, done = 0;
   for (const ScheduledFrame& scheduled : schedule) total += scheduled.write;
 
-  const AccumulatorOptions accumulator{job.parameters, s.gather, s.measured};
+  const auto blur_table =
+      four ? blur_table_for(job.parameters.subpixel, job.parameters.recursive) : std::optional<BlurTable>();
+  const AccumulatorOptions accumulator{job.parameters, s.gather, s.measured, blur_table};
   const bool gathers = job.parameters.accumulator == Accumulator::gather;
   std::optional<TwoSidedPass> two_sided;
   if (job.parameters.accumulator == Accumulator::two_sided)
@@ -245,7 +248,8 @@ ResolveSummary resolve_sequence(const ResolveJob& asked, const ResolveEvents& ev
     std::vector<Resolved> resolved = two_sided ? accumulate_two_sided(*two_sided, i, source)
                                      : gathers
                                          ? accumulate_gather(accumulator, window, i, {first, last}, states, workers)
-                                         : accumulate_recursive(accumulator, source, scheduled, states, workers);
+                                     : four ? accumulate_subpixel_frame(accumulator, source, scheduled, states, workers)
+                                            : accumulate_recursive(accumulator, source, scheduled, states, workers);
     if (summary.stopped) break;
     hold_layers(source, resolved, workers);
     count(report, source, resolved, workers);

@@ -10,7 +10,7 @@ constexpr Aov kAovs[] = {
     {"clip", "", PixelType::float32, "relative", "0 to 2", "inferno", 0, 1,
      "Clip distance: how far rectification moved the history (under --rule off: would have moved it), in RGB, over the "
      "longer of what it was and what it became.",
-     kByRecursive | kByTwoSided},
+     kByRecursive | kByTwoSided | kBySubpixel},
     {"reject", "", PixelType::uint32, "bits", "0 to 8191", "turbo", 0, 8191,
      "Why history was not used, or counts half or less of what it would: a sum of the bits listed under REJECTION "
      "BITS. 0 where history was used. With --accumulator two-sided: why the past was not used."},
@@ -23,6 +23,15 @@ constexpr Aov kAovs[] = {
      "blended in. 0 where there is no history. It follows its neighbors, which share the jitter of the pixel: to rank "
      "settings use varve measure.",
      kByRecursive},
+    {"blur-variance", "", PixelType::float32, "pixels squared", "0 and up", "inferno", 0, 1,
+     "Second moment of the kernel through which the pixel sees the samples, mean of both axes: what reading history "
+     "between pixels has blurred, and a box of one pixel (0.083) from the jitter. With --accumulator subpixel of all "
+     "four histories, at the true positions of their samples.",
+     kByRecursive | kBySubpixel},
+    {"residual", "", PixelType::float32, "relative", "0 to 2", "inferno", 0, 1,
+     "How far history lags behind the present: their difference, averaged with its sign over --residual-window, over "
+     "the light there, before the present counts. 0 where there is no history.",
+     kByRecursive | kBySubpixel},
     {"repaired", "", PixelType::float32, "flag", "0 or 1", "inferno", 0, 1,
      "1 where the input color was not finite and something else stands in the output."},
     {"count-past", "", PixelType::float32, "samples", "0 and up", "viridis", 0, 20,
@@ -110,6 +119,7 @@ std::string accumulators_of(const Aov& aov) {
   add(kByRecursive, "recursive");
   add(kByTwoSided, "two-sided");
   add(kByGather, "gather");
+  add(kBySubpixel, "subpixel");
   return text;
 }
 

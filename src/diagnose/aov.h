@@ -12,7 +12,7 @@
 namespace varve {
 
 /// Who can fill a plane, a sum of these.
-inline constexpr unsigned kByRecursive = 1, kByTwoSided = 2, kByGather = 4, kByAll = 7;
+inline constexpr unsigned kByRecursive = 1, kByTwoSided = 2, kByGather = 4, kBySubpixel = 8, kByAll = 15;
 
 struct Aov {
   std::string_view name;        ///< as given to --aov; the channel is varve.<name>[.<component>]

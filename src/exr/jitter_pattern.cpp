@@ -119,6 +119,18 @@ Points random(const PatternRequest& r) {
   return out;
 }
 
+/// The quarters of the pixel in turn, each visited at a Halton point of its own.
+Points quadrants(const PatternRequest& r) {
+  constexpr Jitter kMiddles[] = {{-0.25, -0.25}, {0.25, 0.25}, {0.25, -0.25}, {-0.25, 0.25}};
+  Points out;
+  for (int i = 0; i < r.length; ++i) {
+    const Jitter& middle = kMiddles[i % 4];
+    const int visit = i / 4 + 1;
+    out.push_back({middle.x + radical_inverse(visit, 2) / 2 - 0.25, middle.y + radical_inverse(visit, 3) / 2 - 0.25});
+  }
+  return out;
+}
+
 Points motion_perpendicular(const PatternRequest& r) {
   const double angle = r.direction * std::numbers::pi / 180;
   const Jitter across{-std::sin(angle) / 4, std::cos(angle) / 4};
@@ -177,6 +189,8 @@ const JitterPattern kPatterns[] = {
        return fixed(8, {{-1, 3}, {1, -3}, {3, 1}, {-3, -1}});
      },
      4, 0},
+    {"quadrants", "the four quarters of a pixel in turn, in each a Halton point: for --accumulator subpixel",
+     "Yang et al. 2009", quadrants, 0, kMost},
     {"motion-perpendicular", "two positions a quarter of a pixel to both sides of the motion, see --direction", kInside,
      motion_perpendicular, 2, 0},
     {"msaa1", "one sample, the center", kDirect3d,

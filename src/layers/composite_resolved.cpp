@@ -78,7 +78,7 @@ Accumulated composite_resolved(std::span<const Present* const> presents, std::sp
       [](const Accumulated& a) -> auto& { return a.history.spread; }, out.history.spread);
   using D = AccumulateDiagnostics;
   for (Plane<float> D::*plane : {&D::clip, &D::weight, &D::count_past, &D::count_future, &D::variance, &D::frames,
-                                 &D::surfaces, &D::gain, &D::removed, &D::round_trip})
+                                 &D::surfaces, &D::gain, &D::removed, &D::round_trip, &D::blur, &D::residual})
     show(
         [plane](const Accumulated& a) -> auto& { return a.diagnostics.*plane; }, out.diagnostics.*plane);
   for (Plane<std::uint32_t> D::*plane : {&D::reject, &D::reject_future})

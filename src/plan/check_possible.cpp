@@ -4,6 +4,7 @@
 #include "plan/camera_plan.h"
 #include "plan/expansive.h"
 #include "plan/layers_plan.h"
+#include "plan/subpixel_plan.h"
 #include "plan/value.h"
 
 namespace varve {
@@ -91,6 +92,7 @@ void check_tests(const SequenceInfo& info, const Parameters& parameters) {
 
 void check_possible(const SequenceInfo& info, const Parameters& parameters) {
   check_layers(info, parameters);
+  check_subpixel(info, parameters);
   if (parameters.accumulator == Accumulator::two_sided) check_two_sided(info, parameters);
   if (parameters.accumulator != Accumulator::gather) check_filters(parameters.recursive);
   if (parameters.accumulator != Accumulator::gather) check_tests(info, parameters);
@@ -104,7 +106,7 @@ void check_possible(const SequenceInfo& info, const Parameters& parameters) {
                           "give --disocclusion window");
   if (parameters.accumulator != Accumulator::gather) {
     const std::string clash =
-        conflict(parameters.rectify, parameters.recursive, parameters.accumulator == Accumulator::recursive);
+        conflict(parameters.rectify, parameters.recursive, parameters.accumulator != Accumulator::two_sided);
     if (!clash.empty()) throw Failure(ExitCode::usage, clash);
   }
   const bool weigh = parameters.recursive.sample_filter != SampleFilter::none;

@@ -7,6 +7,7 @@
 #include "diagnose/aov.h"
 #include "plan/deep_plan.h"
 #include "plan/gather_plan.h"
+#include "plan/subpixel_plan.h"
 #include "plan/two_sided_plan.h"
 #include "resolve/rectify_shapes.h"
 
@@ -204,6 +205,8 @@ std::size_t estimate_bytes(const SequenceInfo& info, const Plan& plan, const Par
     // A companion's sample, and its values of the last frame and of this one.
     const std::size_t companions = subject.companions.size();
     histories += pixels * 2 * 16 * companions;
+    if (parameters.accumulator == Accumulator::subpixel)
+      histories += pixels * subpixel_bytes_per_pixel(parameters, companions);
     if (gathers) histories += pixels * gather_bytes_per_pixel(parameters);
     if (two_sided)  // the past of the next block too, three frames' vectors
       histories += pixels * (24 + 3 * 20 + waiting_bytes_per_pixel(parameters, output));
@@ -249,7 +252,8 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
     for (const Subject& subject : accumulated(info)) nanoseconds += double(pixels_of(info, subject)) * per_pixel;
     return nanoseconds * 1e-9 / std::max(1, threads);
   }
-  per_pixel += kBlend + cost_of(recursive.history_filter);
+  const bool four = parameters.accumulator == Accumulator::subpixel;
+  if (!four) per_pixel += kBlend + cost_of(recursive.history_filter);
   if (plan.use_motion && parameters.motion.dilation != Dilation::none) per_pixel += kDilate;
   if (recursive.disocclusion == Disocclusion::depth) per_pixel += kDepthTest;
   if (recursive.sample_filter != SampleFilter::none) per_pixel += kSampleWeights;
@@ -264,7 +268,9 @@ double estimate_seconds(const SequenceInfo& info, const Plan& plan, const Parame
   for (const Subject& subject : accumulated(info)) {
     const double motion = !plan.use_motion ? 0 : subject.backward ? kMotion : subject.forward ? kMotion + kInvert : 0;
     const std::size_t planes = subject.companions.size();
-    const double companions = planes == 0 ? 0 : kCompanionMove + double(planes) * (kCompanion + kConvert + kSanitize);
+    if (four) nanoseconds += double(pixels_of(info, subject)) * subpixel_nanoseconds(parameters, planes);
+    const double companions =
+        planes == 0 || four ? 0 : kCompanionMove + double(planes) * (kCompanion + kConvert + kSanitize);
     nanoseconds += double(pixels_of(info, subject)) * ((per_pixel + motion) * passes + companions);
   }
   return nanoseconds * 1e-9 / std::max(1, threads);

@@ -48,6 +48,7 @@ std::vector<Knob> knobs() {
   constexpr auto basic = Tier::basic, advanced = Tier::advanced, expert = Tier::expert;
   constexpr std::string_view motion = "Motion and depth", history = "History", rectify = "Rectification",
                              around = "Gather (--accumulator gather)",
+                             quarters = "Sub-pixel histories (--accumulator subpixel)",
                              sides = "Past and future (--accumulator two-sided)", reject = "Rejection",
                              finish = "Finishing";
   return {
@@ -123,6 +124,34 @@ std::vector<Knob> knobs() {
        "Whether the present is brought to the pixel centers before it is blended in; needs the jitter of the frames.",
        word(
            [](auto& p) -> auto& { return p.recursive.unjitter; }, kUnjitters)},
+
+      {"blur-limit", "PX2", history, advanced,
+       "Variance of the blur that reading history between pixels may build up, in square pixels; the present weighs "
+       "more "
+       "where it would be more. A box of one pixel has 0.083. Small values alias, large ones blur; 0 sets no limit. Of "
+       "the accumulators recursive and subpixel.",
+       number([](auto& p) -> auto& { return p.recursive.blur_limit; }, {0, 1000})},
+      {"residual-limit", "RATIO", history, advanced,
+       "Relative difference to the present that may stay in history where the light changes; the present weighs more "
+       "where it would be more. Small values alias, large ones lag; 0 sets no limit.",
+       number([](auto& p) -> auto& { return p.recursive.residual_limit; }, {0, 2})},
+      {"residual-window", "PIXELS", history, expert,
+       "Edge of the window over which that difference is averaged, with its sign: 3, or 7 for noisy frames.",
+       odd_number([](auto& p) -> auto& { return p.recursive.residual_window; }, {3, 15})},
+
+      {"subpixel-radius", "PIXELS", quarters, expert,
+       "Half width of the tent through which the samples of the four histories are seen. Small ones are sharper; where "
+       "one does not hold enough samples it is widened.",
+       number([](auto& p) -> auto& { return p.subpixel.radius; }, {0.5, 1})},
+      {"subpixel-weights", "WORD", quarters, advanced, "How those samples are weighed.",
+       word(
+           [](auto& p) -> auto& { return p.subpixel.weights; }, kSubpixelWeights)},
+      {"blur-bound", "WORD", quarters, expert, "What --blur-limit goes by.",
+       word(
+           [](auto& p) -> auto& { return p.subpixel.bound; }, kBlurBounds)},
+      {"scale", "FACTOR", quarters, advanced,
+       "Size of the picture: 1 writes the mean of the four quarters of a pixel, 2 each quarter as a pixel of its own.",
+       number([](auto& p) -> auto& { return p.subpixel.scale; }, {1, 2})},
 
       {"look-ahead", "FRAMES", sides, advanced,
        "Frames that are looked at, at least, before and after each one; also the length of the blocks they are worked "

@@ -10,6 +10,19 @@ constexpr Word<Accumulator> kAccumulators[] = {
     {"recursive", Accumulator::recursive, "a history that is carried from frame to frame; fast, looks back only"},
     {"two-sided", Accumulator::two_sided, "past and future histories merged, the present counted once"},
     {"gather", Accumulator::gather, "every sample of the frames around, carried here along its own motion, used once"},
+    {"subpixel", Accumulator::subpixel,
+     "four histories in the quarters of a pixel, one new in each frame; sharper than one, needs the jitter"},
+};
+constexpr Word<SubpixelWeights> kSubpixelWeights[] = {
+    {"plain", SubpixelWeights::plain, "the tent, normalized; narrow ones let the picture drift in motion"},
+    {"first-order", SubpixelWeights::first_order, "the tent by moving least squares: no drift"},
+    {"second-order", SubpixelWeights::second_order,
+     "likewise for parabolas: reading adds no blur variance; sharper, a little more noise"},
+    {"bilinear", SubpixelWeights::bilinear, "one bilinear fetch in each history: a tent of one pixel; softer, faster"},
+};
+constexpr Word<BlurBound> kBlurBounds[] = {
+    {"tracked", BlurBound::tracked, "the kernel of every pixel is known, and kept below the limit"},
+    {"table", BlurBound::tabulated, "as published: the weight that a steady motion of that speed needs"},
 };
 constexpr Word<Dilation> kDilations[] = {
     {"none", Dilation::none, "the pixel's own vector"},

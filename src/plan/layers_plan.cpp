@@ -59,8 +59,9 @@ PlannedPass layers_pass(const SequenceInfo& info) {
 void check_layers(const SequenceInfo& info, const Parameters& parameters) {
   const bool spline = parameters.recursive.history_filter == HistoryFilter::bspline3 ||
                       parameters.recursive.history_filter == HistoryFilter::bspline5;
-  const bool carries =
-      parameters.accumulator == Accumulator::gather || (parameters.accumulator == Accumulator::recursive && !spline);
+  const bool carries = parameters.accumulator == Accumulator::gather ||
+                       parameters.accumulator == Accumulator::subpixel ||
+                       (parameters.accumulator == Accumulator::recursive && !spline);
   for (const ColorOutput& output : info.first.outputs)
     for (const std::size_t i : output.inputs)
       if (output.combine == Combine::layers && output.after && !carries &&

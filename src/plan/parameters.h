@@ -10,6 +10,7 @@
 #include "resolve/fallback.h"
 #include "resolve/sharpen.h"
 #include "resolve/two_sided.h"
+#include "subpixel/subpixel_history.h"
 
 namespace varve {
 
@@ -24,6 +25,7 @@ struct Parameters {
   FinishParameters finish;
   GatherParameters gather;
   TwoSidedParameters two_sided;
+  SubpixelParameters subpixel;
 };
 
 }  // namespace varve

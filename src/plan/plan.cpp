@@ -14,6 +14,7 @@
 #include "plan/layers_plan.h"
 #include "plan/repair_plan.h"
 #include "plan/samples_plan.h"
+#include "plan/subpixel_plan.h"
 #include "plan/two_sided_plan.h"
 #include "plan/value.h"
 
@@ -337,12 +338,17 @@ Plan make_plan(const SequenceInfo& info, const Parameters& parameters, const Out
   } else {
     planner.sides();
     planner.dilate();
+  }
+  if (parameters.accumulator == Accumulator::subpixel) {
+    for (PlannedPass& pass : subpixel_passes(info, parameters, plan)) plan.passes.push_back(std::move(pass));
+  } else if (parameters.accumulator != Accumulator::gather) {
     planner.history();
     planner.rejection();
     planner.sample_weights();
     planner.rectify();
     planner.weights();
     planner.blend();
+    if (parameters.accumulator == Accumulator::recursive) plan.passes.push_back(bounds_pass(parameters));
   }
   if (composites_after(info)) plan.passes.push_back(layers_pass(info));
   planner.companions();

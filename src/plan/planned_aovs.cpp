@@ -13,6 +13,8 @@ unsigned filled_by(Accumulator accumulator) {
       return kByTwoSided;
     case Accumulator::gather:
       return kByGather;
+    case Accumulator::subpixel:
+      return kBySubpixel;
   }
   return 0;
 }

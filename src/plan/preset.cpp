@@ -47,6 +47,11 @@ constexpr Preset kPresets[] = {
      "sample-filter=none look-ahead=0 return-tolerance=0.5 "
      "box=variance gamma=1 window=3 moments=direct rule=clip anchor=present space=rgb hull-passes=64 "
      "clip-discount=off"},
+    {"yang", "Yang, Nehab, Sander, Sitthi-amorn, Lawrence and Hoppe 2009, Amortized Supersampling",
+     "Four sub-pixel histories, blur and lag bounded, nothing but depth to drop history; needs jitter and depth.",
+     "accumulator=subpixel dilation=none alpha=0.15 alpha-rule=mean disocclusion=depth sample-filter=none "
+     "blur-limit=0.25 residual-limit=0.3 residual-window=7 subpixel-radius=0.5 subpixel-weights=first-order "
+     "blur-bound=tracked box=none moments=direct hull-passes=64 clip-discount=off"},
     {"lopez", "Lopez, The Holy Trail; defaults of the public code MSAAFilter",
      "A tenth of the present, the vector of the nearest surface, sharp history, a wide variance box around the mean.",
      "accumulator=recursive dilation=nearest alpha=0.1 alpha-rule=fixed history-filter=catmull-rom dering=on "

@@ -91,6 +91,9 @@ struct Survey {
 
   void add(const FrameHeaders& frame) {
     if (frame.jitter) ++info.frames_with_jitter;
+    if (frame.sample_jitter.empty() && frame.jitter) info.jitters.push_back(*frame.jitter);
+    for (const std::optional<Jitter>& jitter : frame.sample_jitter)
+      if (jitter) info.jitters.push_back(*jitter);
     cameras.add(frame);
     compare_windows(frame, info);
     const std::set<std::string> names = channel_names(frame);

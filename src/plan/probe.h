@@ -58,8 +58,9 @@ struct SequenceInfo {
   bool windows_move = false;    ///< a data window differs between frames
   bool windows_differ = false;  ///< display windows differ between frames
   int frames_with_jitter = 0;
-  std::string jitter_source;  ///< "none found", or where from
-  std::string camera;         ///< "none found", or which attributes, and in how many frames
+  std::vector<Jitter> jitters;  ///< known ones of all frames and samples, in their order
+  std::string jitter_source;    ///< "none found", or where from
+  std::string camera;           ///< "none found", or which attributes, and in how many frames
   int frames_with_camera = 0;
   CameraTrack cameras;             ///< by frame
   std::vector<std::string> notes;  ///< channels that differ between frames, a jitter.csv beside the frames, ...

@@ -45,7 +45,9 @@ std::size_t repair_bytes_per_pixel(const Parameters& parameters) {
 
 double repair_nanoseconds(const Parameters& parameters) {
   if (parameters.repair.mode == RepairMotion::off) return 0;
-  return parameters.accumulator == Accumulator::recursive ? 100 : 200;  // both directions
+  return parameters.accumulator == Accumulator::recursive || parameters.accumulator == Accumulator::subpixel
+             ? 100
+             : 200;  // both directions
 }
 
 }  // namespace varve

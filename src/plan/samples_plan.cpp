@@ -16,6 +16,9 @@ std::string each_text(const Parameters& parameters, const std::string& count) {
     return "all " + count +
            " samples of every frame are gathered, each at its true position, along vectors of samples of its number; "
            "the cost grows with them";
+  if (parameters.accumulator == Accumulator::subpixel)
+    return "all " + count +
+           " samples of every frame go to the histories of the quarters they lie in, along the vectors of the first";
   return "each of " + count +
          " has a history of its own, and the pixel is the mean of what comes of them; the cost grows with them";
 }

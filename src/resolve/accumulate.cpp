@@ -11,6 +11,7 @@
 #include "resolve/empty_spans.h"
 #include "resolve/rectify_shapes.h"
 #include "resolve/remainder.h"
+#include "resolve/residual.h"
 #include "resolve/row_passes.h"
 #include "resolve/sample_weights.h"
 
@@ -289,7 +290,7 @@ class RowRunner {
     kernel_.fetch_history(v_, y, rows);
     if (tests) test_history(passes, y, rows, extra);
     if (passes.weighs && passes.parameters.weight.anti_flicker > 0) find_clip_events(passes, y, rows, extra);
-    if (steps_.fetched) (*steps_.fetched)(v_, y, rows, worker);
+    if (steps_.fetched && *steps_.fetched) (*steps_.fetched)(v_, y, rows, worker);
     if (shapes_)
       rectify_shapes(v_, *shapes_, contents_, y, rows, room_[std::size_t(worker)], scratch.counts);
     else
@@ -342,6 +343,30 @@ void remember_surfaces(History& history, const Present& present, const Recursive
   if (p.reject.normal_angle > 0 && !present.normal.empty()) history.normal = present.normal.clone();
 }
 
+namespace {
+
+/// The difference of present and history, before they are blended: one more walk through the rows.
+Plane<float> find_residual(const Present& present, const History& previous, const RecursiveParameters& recursive,
+                           const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, Workers& workers,
+                           Isa isa) {
+  const Window& w = present.color.window();
+  Plane<glm::vec4> differences(w);
+  const auto compare = [&](const AccumulateView& v, int y, const RowScratch& s, int) {
+    for (int x = 0; x < v.width; ++x) {
+      const bool both = s.total[x] > 0 && v.weight.origin[y * v.weight.stride + x] > 0;
+      const float* c = v.color.origin + y * v.color.stride + 4 * x;
+      const float* h = s.history + 4 * x;
+      differences.row(y + w.y0)[x] =
+          both ? difference_to({c[0], c[1], c[2], c[3]}, {h[0], h[1], h[2], h[3]}) : glm::vec4(0.0f);
+    }
+  };
+  AccumulateDiagnostics none;
+  visit_history(present, previous, recursive, rectify, jitter, 0, {}, none, {}, compare, workers, isa);
+  return residual_of(differences, recursive.residual_window, workers);
+}
+
+}  // namespace
+
 Accumulated accumulate(const Present& present, const History& previous, const RecursiveParameters& recursive,
                        const RectifyParameters& rectify, std::optional<glm::dvec2> jitter, std::uint32_t restart_bit,
                        const DiagnosticsWanted& wanted, Workers& workers, Isa isa) {
@@ -370,11 +395,22 @@ Accumulated accumulate(const Present& present, const History& previous, const Re
   const CompanionPass companions = view_companions(v, present, previous, reconstruct, out.history);
   // A first frame is what it is: there is nothing to round.
   if (keeps_remainder(recursive) && !previous.empty()) out.history.remainder = Plane<glm::vec4>(present.color.window());
+  RowPassView passes = row_passes_for(v, present, previous, recursive);
+  BoundPlanes bounds{{}, &out.history.blur};
+  const bool compares = recursive.residual_limit > 0 || wanted.residual;
+  if (recursive.bounds() || wanted.blur || compares) {
+    if (compares) bounds.residual = find_residual(present, previous, recursive, rectify, jitter, workers, isa);
+    out.history.blur = Plane<float>(present.color.window());
+    passes.bounds = &bounds;
+    passes.weighs = true;
+  }
   out.counts = run_rows(
       v,
-      {shape_rules(rectify, recursive, made), row_passes_for(v, present, previous, recursive), nullptr, nullptr,
-       companions.empty() ? nullptr : &companions, out.history.remainder.empty() ? nullptr : &out.history.remainder},
+      {shape_rules(rectify, recursive, made), passes, nullptr, nullptr, companions.empty() ? nullptr : &companions,
+       out.history.remainder.empty() ? nullptr : &out.history.remainder},
       isa, workers);
+  if (wanted.blur) out.diagnostics.blur = out.history.blur.clone();
+  if (wanted.residual) out.diagnostics.residual = std::move(bounds.residual);
   if (!wanted.weight) out.diagnostics.weight = {};
   remember_surfaces(out.history, present, recursive);
   return out;

@@ -33,6 +33,11 @@ struct RecursiveParameters {
   SampleFilter sample_filter = SampleFilter::none;  ///< reconstruct the present from true sample positions
   RejectParameters reject;
   WeightParameters weight;
+  double blur_limit = 0;      ///< px^2: variance of the blur that reading history again and again may build up; 0: any
+  double residual_limit = 0;  ///< relative difference to the present that may stay in history; 0: any
+  int residual_window = 3;    ///< edge of the window that the residual is averaged over, odd, 3 to 15
+
+  bool bounds() const { return blur_limit > 0 || residual_limit > 0; }
 };
 
 /// What history may say. Sources: Salvi 2016 (variance clipping), Pedersen 2016, Lopez.
@@ -57,8 +62,9 @@ struct History {
   Plane<glm::vec4> color;                    ///< resolved RGBA, float, no border
   std::vector<Plane<glm::vec4>> companions;  ///< resolved, in the order of Present::companions
   Plane<float> total;                        ///< sum of sample weights so far; 0: no valid data
-  Plane<float> spread;  ///< sum of squared normalized weights; 1/spread is the effective sample count
+  Plane<float> spread;         ///< sum of squared normalized weights; 1/spread is the effective sample count
   Plane<glm::vec4> remainder;  ///< what rounding took from color; empty unless keeps_remainder() (resolve/remainder.h)
+  Plane<float> blur;  ///< px^2, variance of the kernel that made the color, mean of both axes; empty unless tracked
   // Of the frame it was made from; each empty unless a test needs it.
   Plane<float> depth;
   Plane<glm::vec2> motion;
@@ -77,6 +83,8 @@ struct AccumulateDiagnostics {
   Plane<float> count_past, count_future;
   Plane<std::uint32_t> reject_future;
   Plane<float> variance, frames, surfaces, gain, removed, round_trip;  // only of the gather
+  Plane<float> blur;      // px^2, variance of the kernel that made the output
+  Plane<float> residual;  // relative difference between present and history, averaged with its sign
 };
 
 struct AccumulateView;  // resolve/accumulate_row.h
@@ -85,6 +93,7 @@ struct RowScratch;
 struct DiagnosticsWanted {
   bool clip = false, weight = false, reject = false, counts = false;
   bool gather = false;  ///< what only the gather fills
+  bool blur = false, residual = false;
 };
 
 struct AccumulateCounts {

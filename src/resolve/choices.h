@@ -5,8 +5,17 @@
 namespace varve {
 
 /// How frames are combined: exponential history, one frame back (Yang 2009, Salvi 2016); strict past and strict future
-/// merged with the present counted once; or every sample of the frames around, carried here and used once.
-enum class Accumulator { recursive, two_sided, gather };
+/// merged with the present counted once; every sample of the frames around, carried here and used once; or four
+/// exponential histories in the quarters of a pixel, one of them new in each frame (Yang 2009).
+enum class Accumulator { recursive, two_sided, gather, subpixel };
+
+/// How the samples of the four histories are weighed around a place: a tent, normalized; the same so that their centroid
+/// is the place; or one bilinear fetch in each history.
+enum class SubpixelWeights { plain, first_order, second_order, bilinear };
+
+/// Where the bound on the blur of the four histories comes from: the kernel of each pixel as it came about, or a table
+/// of steady motions (Yang 2009).
+enum class BlurBound { tracked, tabulated };
 
 /// How history is read between pixels. All but some cubics are non-expansive (|R(f)| <= 1, see resampling_kernel.h), so
 /// that reading it again and again is stable; the plan refuses the cubics that are not.

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "resolve/blur_variance.h"
 #include "resolve/remainder.h"
+#include "resolve/residual.h"
 #include "resolve/row_passes.h"
 
 namespace varve {
@@ -61,6 +63,24 @@ double alpha_at(const RowPassView& pass, int x, int y, const RowScratch& s, cons
 double aged(double alpha, AlphaRule rule, double total, double w) {
   const double steady = w == 1 ? alpha : alpha * w / (1 - alpha + alpha * w);
   return rule == AlphaRule::fixed ? steady : std::max(steady, w / (total + w));
+}
+
+/// Raises the weight of the present until blur and lag stay within their limits; where they spoke, the history is as
+/// old as would give that weight. Notes what becomes of the blur.
+void bound_weight(const RowPassView& pass, int x, int y, double& a, double& total) {
+  const RecursiveParameters& p = pass.parameters;
+  const Window& w = pass.present.color.window();
+  const double moment = history_variance(pass, x, y);
+  double least = alpha_of_blur(moment, kPixelVariance, p.blur_limit);
+  if (!pass.bounds->residual.empty())
+    least = std::max(least, alpha_of_residual(double(pass.bounds->residual.at(x + w.x0, y + w.y0)), p.residual_limit));
+  if (least > a) {
+    a = std::min(1.0, least);
+    total = std::max(std::min(total, (1 - a) / a), 1e-6);
+  }
+  const bool counts = pass.frame.weight.origin[y * pass.frame.weight.stride + x] > 0;
+  const double now = counts ? a : 0;  // a pixel that is not valid keeps its history
+  pass.bounds->blur->at(x + w.x0, y + w.y0) = float(now * kPixelVariance + (1 - now) * moment);
 }
 
 /// Light over 1 + its luma (Karis, the weight of his temporal resolve); negative luma weighs as black.
@@ -126,7 +146,10 @@ void weigh_present(const RowPassView& pass, int y, const RowScratch& s, const Ro
   const double exposure = std::exp2(weight.exposure);
   for (int x = 0; x < v.width; ++x) {
     extra.present_weight[x] = 1;
-    if (!(s.total[x] > 0)) continue;
+    if (!(s.total[x] > 0)) {
+      if (pass.bounds) pass.bounds->blur->row(y + window.y0)[x] = float(kPixelVariance);
+      continue;
+    }
     const double w = v.sample_weight.origin ? double(v.sample_weight.origin[y * v.sample_weight.stride + x]) : 1.0;
     double total = double(s.total[x]);
     double a = aged(alpha_at(pass, x, y, s, extra), pass.parameters.alpha_rule, total, w);
@@ -152,6 +175,7 @@ void weigh_present(const RowPassView& pass, int y, const RowScratch& s, const Ro
       const double then = (1 - a) * karis_weight(luma(s.history + 4 * x), exposure);
       if (now + then > 0) a = now / (now + then);
     }
+    if (pass.bounds) bound_weight(pass, x, y, a, total);
     extra.present_weight[x] = a;
     s.total[x] = float(total);
   }

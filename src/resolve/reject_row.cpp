@@ -4,6 +4,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "resolve/row_passes.h"
+#include "resolve/surface_test.h"
 
 namespace varve {
 namespace {
@@ -28,70 +29,16 @@ Position previous_position(const AccumulateView& v, int x, int y) {
   return {int(bx), int(by), float(hx - bx), float(hy - by), hx, hy};
 }
 
-/// How much the depth of the present changes over a pixel, x and y together. The lesser of both sides, so that an edge
-/// beside the pixel is no slope; none where both sides lead steeply the same way, as on a wire.
-double depth_slope(const Plane<float>& depth, int x, int y) {
-  const Window& w = depth.window();
-  const double z = double(depth.at(x, y));
-  const auto change = [&](int dx, int dy) {
-    const bool before = w.contains(x - dx, y - dy), after = w.contains(x + dx, y + dy);
-    double a = before ? z - double(depth.at(x - dx, y - dy)) : 0.0;
-    double b = after ? double(depth.at(x + dx, y + dy)) - z : 0.0;
-    if (!before) a = b;
-    if (!after) b = a;
-    const double least = std::min(std::abs(a), std::abs(b)), most = std::max(std::abs(a), std::abs(b));
-    const bool ridge = a * b < 0 && least > 0.5 * most;
-    return std::isfinite(least) && !ridge ? least : 0.0;  // two backgrounds differ by NaN
-  };
-  return change(1, 0) + change(0, 1);
-}
-
-/// What a pixel of the present is compared by.
-struct Surface {
-  bool depth, normal, id;
-  double z, z_tolerance, slope_tolerance, least_cosine;
-  glm::vec3 n;
-  std::uint32_t name;
-};
-
-Surface surface_at(const RowPassView& pass, int x, int y) {
+TestedSurface surface_at(const RowPassView& pass, int x, int y) {
   const Present& p = pass.present;
   const RejectParameters& reject = pass.parameters.reject;
   const Window& w = p.color.window();
-  Surface s{};
-  s.depth = tests_depth_apart(pass.parameters) && !p.depth.empty() && !pass.previous.depth.empty();
-  s.normal = reject.normal_angle > 0 && !p.normal.empty() && !pass.previous.normal.empty();
-  s.id = reject.id != IdTest::off && !p.id.empty() && !pass.previous.id.empty();
-  if (s.depth) {
-    s.z = double(p.depth.at(x + w.x0, y + w.y0));
-    s.z_tolerance = pass.parameters.depth_tolerance;
-    s.slope_tolerance = reject.depth_slope > 0 ? reject.depth_slope * depth_slope(p.depth, x + w.x0, y + w.y0) : 0;
-  }
-  if (s.normal) {
-    s.n = p.normal.at(x + w.x0, y + w.y0);
-    s.least_cosine = std::cos(reject.normal_angle * glm::pi<double>() / 180);
-  }
-  if (s.id) s.name = p.id.at(x + w.x0, y + w.y0);
-  return s;
-}
-
-/// Tests that a history pixel fails, as reject bits; coordinates of the history's window.
-unsigned failed_tests(const Surface& s, const History& h, int x, int y) {
-  unsigned failed = 0;
-  if (s.depth) {
-    const double z = double(h.depth.at(x, y));
-    const bool same = z == s.z || std::abs(z - s.z) <= s.z_tolerance * std::min(z, s.z) + s.slope_tolerance;
-    if (!same) failed |= kRejectDepth;
-  }
-  if (s.normal) {
-    const glm::vec3 n = h.normal.at(x, y);
-    const bool known = s.n != glm::vec3(0.0f) && n != glm::vec3(0.0f);
-    const double cosine = double(n.x) * double(s.n.x) + double(n.y) * double(s.n.y) + double(n.z) * double(s.n.z);
-    // Rounded normals of the same surface may have a product just below 1.
-    if (known && !(cosine >= s.least_cosine - 1e-6)) failed |= kRejectNormal;
-  }
-  if (s.id && h.id.at(x, y) != s.name) failed |= kRejectId;
-  return failed;
+  SurfaceTests tests;
+  tests.depth = tests_depth_apart(pass.parameters) && !p.depth.empty() && !pass.previous.depth.empty();
+  tests.normal = reject.normal_angle > 0 && !p.normal.empty() && !pass.previous.normal.empty();
+  tests.id = reject.id != IdTest::off && !p.id.empty() && !pass.previous.id.empty();
+  tests.depth_tolerance = pass.parameters.depth_tolerance;
+  return surface_at(p, tests, reject, x + w.x0, y + w.y0);
 }
 
 /// The four history pixels around a position, each tested.
@@ -103,7 +50,7 @@ struct SurfaceTest {
   float total = 0, spread = 0;
 };
 
-SurfaceTest test_surface(const RowPassView& pass, const Surface& s, const Position& at) {
+SurfaceTest test_surface(const RowPassView& pass, const TestedSurface& s, const Position& at) {
   const History& h = pass.previous;
   const Window& w = h.color.window();
   const bool soft = pass.parameters.reject.id == IdTest::soft;
@@ -114,7 +61,7 @@ SurfaceTest test_surface(const RowPassView& pass, const Surface& s, const Positi
       const float weight = (i ? at.fx : 1 - at.fx) * (j ? at.fy : 1 - at.fy);
       const int x = at.x + i + w.x0, y = at.y + j + w.y0;
       if (!(weight > 0) || !w.contains(x, y) || !(h.total.at(x, y) > 0)) continue;
-      unsigned failed = failed_tests(s, h, x, y);
+      unsigned failed = failed_tests(s, h.depth, h.normal, h.id, x, y);
       r.available += double(weight);
       if (!(failed & kRejectId)) r.same_id += double(weight);
       if (soft) failed &= ~unsigned(kRejectId);
@@ -142,7 +89,7 @@ struct Verdict {
 
 /// Surface tests of one pixel. Where some of the four history pixels fail, the others stand in.
 void judge_surface(const RowPassView& pass, int x, int y, const Position& at, const RowScratch& s, Verdict& verdict) {
-  const Surface surface = surface_at(pass, x, y);
+  const TestedSurface surface = surface_at(pass, x, y);
   const SurfaceTest t = test_surface(pass, surface, at);
   if (surface.id && pass.parameters.reject.id == IdTest::soft && t.available > 0)
     verdict.add(t.same_id / t.available, kRejectId);

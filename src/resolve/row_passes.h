@@ -8,6 +8,12 @@
 
 namespace varve {
 
+/// Planes of the bounds on the weight of the present; windows are those of the present.
+struct BoundPlanes {
+  Plane<float> residual;  ///< of history against present; empty without that bound
+  Plane<float>* blur;     ///< gets the variance of the kernel that made each pixel, px^2
+};
+
 /// One frame as the row passes see it. `y` and `x` below are relative to the corner of the present's window, as in
 /// AccumulateView.
 struct RowPassView {
@@ -15,9 +21,10 @@ struct RowPassView {
   const Present& present;
   const History& previous;
   const RecursiveParameters& parameters;
-  bool tests_surfaces, tests_vectors;  // with the planes that this takes
-  bool weighs;                         // the weight of the present differs from pixel to pixel
-  bool finishes;                       // something is done to what was blended
+  bool tests_surfaces, tests_vectors;   // with the planes that this takes
+  bool weighs;                          // the weight of the present differs from pixel to pixel
+  bool finishes;                        // something is done to what was blended
+  const BoundPlanes* bounds = nullptr;  // what blur and residual have to say; null: nothing
 };
 
 /// Rows of `frame.width` pixels that the passes hand on to each other.

@@ -114,6 +114,8 @@ Accumulated mean_of_results(Results results, Workers& workers) {
     return [member](const Accumulated& a) -> const auto& { return a.diagnostics.*member; };
   };
   d.clip = combined<float>(results, of(&AccumulateDiagnostics::clip), workers, Mean{});
+  d.blur = combined<float>(results, of(&AccumulateDiagnostics::blur), workers, Mean{});
+  d.residual = combined<float>(results, of(&AccumulateDiagnostics::residual), workers, Mean{});
   d.weight = combined<float>(results, of(&AccumulateDiagnostics::weight), workers, Mean{});
   d.reject = combined<std::uint32_t>(results, of(&AccumulateDiagnostics::reject), workers, Any{});
   d.reject_future = combined<std::uint32_t>(results, of(&AccumulateDiagnostics::reject_future), workers, Any{});

@@ -8,13 +8,16 @@
 namespace varve {
 namespace {
 
+std::uint32_t restart_bit(const ScheduledFrame& scheduled) {
+  return scheduled.restart_reason == "first frame" ? kRejectFirstFrame : kRejectCut;
+}
+
 Resolved accumulate_one(const AccumulatorOptions& options, const Present& present, const ScheduledFrame& scheduled,
                         SubjectState& state, Workers& workers) {
   const Parameters& p = options.parameters;
   if (scheduled.restart) state.history = {};
   Resolved r;
-  const std::uint32_t restart_bit = scheduled.restart_reason == "first frame" ? kRejectFirstFrame : kRejectCut;
-  r.accumulated = accumulate(present, state.history, p.recursive, p.rectify, present.jitter, restart_bit,
+  r.accumulated = accumulate(present, state.history, p.recursive, p.rectify, present.jitter, restart_bit(scheduled),
                              diagnostics_wanted(options.aovs), workers);
   const auto is_prediction = [](const Aov* aov) { return aov->name == "prediction"; };
   if (std::any_of(options.aovs.begin(), options.aovs.end(), is_prediction))
@@ -22,8 +25,8 @@ Resolved accumulate_one(const AccumulatorOptions& options, const Present& presen
   return r;
 }
 
-/// Places among what is accumulated that are gathered together: samples meet in one pixel, everything else alone.
-std::vector<std::vector<std::size_t>> gathered_together(const FrameHeaders& headers) {
+/// Places among what is accumulated that make one result: samples meet in one pixel, everything else alone.
+std::vector<std::vector<std::size_t>> resolved_together(const FrameHeaders& headers) {
   std::vector<std::vector<std::size_t>> groups;
   std::size_t next = 0;
   for (const ColorOutput& output : headers.outputs) {
@@ -49,6 +52,30 @@ std::vector<Resolved> accumulate_recursive(const AccumulatorOptions& options, co
   return resolved;
 }
 
+std::vector<Resolved> accumulate_subpixel_frame(const AccumulatorOptions& options, const SourceFrame& source,
+                                                const ScheduledFrame& scheduled, std::vector<SubjectState>& states,
+                                                Workers& workers) {
+  const Parameters& p = options.parameters;
+  std::vector<Resolved> resolved(states.size());
+  const std::vector<std::vector<std::size_t>> groups = resolved_together(source.headers);
+  for (std::size_t output = 0; output < groups.size(); ++output) {
+    const std::vector<std::size_t>& group = groups[output];
+    SubpixelHistory& history = states[group.front()].subpixel;
+    if (scheduled.restart) history = {};
+    std::vector<const Present*> samples;
+    for (const std::size_t k : group) samples.push_back(&source.presents[k]);
+    if (output < source.extras.size())
+      for (const Present& further : source.extras[output]) samples.push_back(&further);
+    SubpixelStep step = accumulate_subpixel(samples, std::move(history), p.subpixel, p.recursive, p.rectify,
+                                            options.blur_table ? &*options.blur_table : nullptr, restart_bit(scheduled),
+                                            diagnostics_wanted(options.aovs), workers);
+    history = std::move(step.history);
+    resolved[group.front()].accumulated = std::move(step.resolved);
+    resolved[group.front()].quarters = std::move(step.quarters);
+  }
+  return resolved;
+}
+
 std::vector<Resolved> accumulate_two_sided(TwoSidedPass& pass, std::size_t index, SourceFrame& source) {
   std::vector<Resolved> resolved;
   if (std::optional<std::vector<Accumulated>> all = pass.resolve(index, source))
@@ -64,7 +91,7 @@ std::vector<Resolved> accumulate_gather(const AccumulatorOptions& options, Frame
   repairs.clear();
   window[index].forward_repairs.clear();
   repairs.resize(states.size());
-  const std::vector<std::vector<std::size_t>> groups = gathered_together(window[index].headers);
+  const std::vector<std::vector<std::size_t>> groups = resolved_together(window[index].headers);
   for (std::size_t output = 0; output < groups.size(); ++output) {
     const std::vector<std::size_t>& group = groups[output];
     std::vector<GatherMemory>& memory = states[group.front()].gathered;

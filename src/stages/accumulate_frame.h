@@ -8,6 +8,7 @@
 #include "stages/follow_motion.h"
 #include "stages/gather_frame.h"
 #include "stages/two_sided_pass.h"
+#include "subpixel/accumulate_subpixel.h"
 
 namespace varve {
 
@@ -15,6 +16,7 @@ namespace varve {
 struct SubjectState {
   ForwardMemory forward;
   History history;
+  SubpixelHistory subpixel;            ///< of all samples of a pixel, with the first of them
   std::vector<GatherMemory> gathered;  ///< of each sample
 };
 
@@ -22,12 +24,19 @@ struct AccumulatorOptions {
   const Parameters& parameters;
   const GatherParameters& gather;  ///< with what other parameters have to say in it
   const std::vector<const Aov*>& aovs;
+  const std::optional<BlurTable>& blur_table;  ///< of the four histories
 };
 
 /// One for each of source.presents. The history is that of the frame before, and stays; it is dropped at a restart.
 std::vector<Resolved> accumulate_recursive(const AccumulatorOptions& options, const SourceFrame& source,
                                            const ScheduledFrame& scheduled, std::vector<SubjectState>& states,
                                            Workers& workers);
+
+/// The same by four histories. What samples of the same pixels make together is the result of the first of them, and
+/// the others are empty. The histories in `states` go on to the next frame.
+std::vector<Resolved> accumulate_subpixel_frame(const AccumulatorOptions& options, const SourceFrame& source,
+                                                const ScheduledFrame& scheduled, std::vector<SubjectState>& states,
+                                                Workers& workers);
 
 /// Empty when asked to stop.
 std::vector<Resolved> accumulate_two_sided(TwoSidedPass& pass, std::size_t index, SourceFrame& source);

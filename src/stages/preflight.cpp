@@ -113,7 +113,8 @@ std::vector<ScheduledFrame> schedule_frames(const ResolveJob& job, const Sequenc
 }
 
 FrameReach reach_of(const ResolveJob& job) {
-  if (job.parameters.accumulator == Accumulator::recursive) return {job.preroll, 0, true};
+  const Accumulator accumulator = job.parameters.accumulator;
+  if (accumulator == Accumulator::recursive || accumulator == Accumulator::subpixel) return {job.preroll, 0, true};
   if (job.parameters.accumulator == Accumulator::gather) {
     const int reach = gather_reach(job.parameters.gather);
     return {reach, reach, false};

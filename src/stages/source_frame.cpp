@@ -103,12 +103,13 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, const Nei
     };
     return read_extras(options, source.headers, presents, read, needs_of(options), move, workers);
   });
-  // The gather filters by itself, from true positions.
+  // Who takes samples at their true positions filters by itself, and keeps further ones apart.
   const Parameters& p = options.job.parameters;
-  const SampleFilter filter = p.accumulator == Accumulator::gather ? SampleFilter::none : p.recursive.sample_filter;
+  const bool places = p.accumulator == Accumulator::gather || p.accumulator == Accumulator::subpixel;
+  const SampleFilter filter = places ? SampleFilter::none : p.recursive.sample_filter;
   source.presents = combine_presents(source.headers, std::move(presents),
                                      {options.job.roles, options.show_combined, filter}, workers);
-  if (p.accumulator != Accumulator::gather) {
+  if (!places) {
     for (std::size_t k = 0; k < source.extras.size(); ++k)
       source.presents[k] = add_samples(std::move(source.presents[k]), source.extras[k], filter, workers);
     source.extras.clear();

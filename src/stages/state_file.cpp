@@ -357,6 +357,17 @@ bool is_weight(const Plane<float>& plane) {
   return true;
 }
 
+bool has_shape(const SubpixelBuffer& b) {
+  const Window& w = b.color.window();
+  bool good = b.lag >= 0 && (b.empty() || (!b.total.empty() && !b.spread.empty() && !b.moments.empty()));
+  const auto like = [&](const auto& plane) { good = good && (plane.empty() || plane.window() == w); };
+  like(b.total), like(b.spread), like(b.moments), like(b.depth), like(b.id), like(b.normal);
+  for (const Plane<glm::vec4>& companion : b.companions) like(companion), good = good && !companion.empty();
+  if (!good) return false;
+  for (const Plane<glm::vec4>& companion : b.companions) good = good && is_finite(companion);
+  return good && is_finite(b.color) && is_weight(b.total) && is_weight(b.spread);
+}
+
 /// The planes of a frame share its window, and what is averaged is finite: checksums can be made to fit.
 bool has_shape(const SubjectState& state) {
   const History& h = state.history;
@@ -367,13 +378,16 @@ bool has_shape(const SubjectState& state) {
   };
   if (!h.empty()) good = !h.total.empty() && !h.spread.empty() && h.rows_valid.size() == std::size_t(w.height());
   like(h.total, w), like(h.spread, w), like(h.depth, w), like(h.motion, w), like(h.id, w), like(h.normal, w);
+  like(h.remainder, w), like(h.blur, w);
   for (const Plane<glm::vec4>& companion : h.companions) like(companion, w), good = good && !companion.empty();
   like(state.forward.depth, state.forward.motion.window());
   const SeenPlanes& seen = state.forward.seen;
   like(seen.depth, seen.light.window()), like(seen.id, seen.light.window());
   if (!good) return false;
   for (const Plane<glm::vec4>& companion : h.companions) good = good && is_finite(companion);
-  return good && is_finite(h.color) && is_weight(h.total) && is_weight(h.spread);
+  for (const SubpixelBuffer& quadrant : state.subpixel.quadrants) good = good && has_shape(quadrant);
+  return good && is_finite(h.color) && (h.remainder.empty() || is_finite(h.remainder)) && is_weight(h.total) &&
+         is_weight(h.spread);
 }
 
 }  // namespace

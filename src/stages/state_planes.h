@@ -45,6 +45,8 @@ void visit_members(SameStruct<History> auto& history, Visit&& visit) {
   visit("companions", history.companions);
   visit("total", history.total);
   visit("spread", history.spread);
+  visit("remainder", history.remainder);
+  visit("blur", history.blur);
   visit("depth", history.depth);
   visit("motion", history.motion);
   visit("id", history.id);
@@ -53,15 +55,35 @@ void visit_members(SameStruct<History> auto& history, Visit&& visit) {
 }
 
 template <class Visit>
+void visit_members(SameStruct<SubpixelBuffer> auto& buffer, Visit&& visit) {
+  visit("color", buffer.color);
+  visit("companions", buffer.companions);
+  visit("total", buffer.total);
+  visit("spread", buffer.spread);
+  visit("moments", buffer.moments);
+  visit("depth", buffer.depth);
+  visit("id", buffer.id);
+  visit("normal", buffer.normal);
+  visit("way", buffer.way);
+  visit("lag", buffer.lag);
+}
+
+template <class Visit>
+void visit_members(SameStruct<SubpixelHistory> auto& history, Visit&& visit) {
+  visit("quadrants", history.quadrants);
+}
+
+template <class Visit>
 void visit_members(SameStruct<SubjectState> auto& state, Visit&& visit) {
   visit("forward", state.forward);
   visit("history", state.history);
+  visit("subpixel", state.subpixel);
   visit("gathered", LeftOut{"the gather reads the frames around each frame again"});
 }
 
 template <class T>
-concept HasMembers =
-    SameStruct<T, SeenPlanes> || SameStruct<T, ForwardMemory> || SameStruct<T, History> || SameStruct<T, SubjectState>;
+concept HasMembers = SameStruct<T, SeenPlanes> || SameStruct<T, ForwardMemory> || SameStruct<T, History> ||
+    SameStruct<T, SubpixelBuffer> || SameStruct<T, SubpixelHistory> || SameStruct<T, SubjectState>;
 
 template <class T>
 struct IsArray : std::false_type {};

@@ -252,6 +252,8 @@ Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubje
   if (aov.name == "prediction") fill([&](int x, int y) { return resolved.prediction->color.row(y)[x][component]; });
   if (aov.name == "count")
     fill([&](int x, int y) { return a.history.total.row(y)[x] > 0 ? 1.0f / a.history.spread.row(y)[x] : 0.0f; });
+  if (aov.name == "blur-variance") fill(of(a.diagnostics.blur));
+  if (aov.name == "residual") fill(of(a.diagnostics.residual));
   if (aov.name == "count-past") fill(of(a.diagnostics.count_past));
   if (aov.name == "count-future") fill(of(a.diagnostics.count_future));
   if (aov.name == "variance") fill(of(a.diagnostics.variance));
@@ -300,6 +302,8 @@ DiagnosticsWanted diagnostics_wanted(const std::vector<const Aov*>& aovs) {
     if (aov->name == "reject" || aov->name == "reject-future") wanted.reject = true;
     if (aov->name == "evaluation") wanted.reject = wanted.gather = true;
     if (aov->name == "count-past" || aov->name == "count-future") wanted.counts = true;
+    if (aov->name == "blur-variance") wanted.blur = true;
+    if (aov->name == "residual") wanted.residual = true;
     if (aov->filled_by == kByGather) wanted.gather = true;
   }
   return wanted;

@@ -43,7 +43,7 @@ TEST(Knobs, AreIndependent) {
     Parameters parameters;
     const std::string standard = knob.value.show(parameters);
     std::string other;
-    for (const char* number : {"0.5", "0.25", "7", "9"})
+    for (const char* number : {"0.5", "0.25", "7", "9", "0.75"})
       if (Parameters tried; other.empty() && number != standard && knob.value.read(tried, number)) other = number;
     for (const Choice& choice : knob.value.choices)
       if (choice.word != standard) other = choice.word;
