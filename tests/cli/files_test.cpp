@@ -186,7 +186,7 @@ TEST_F(FilesCli, ChunkTablesThatLieAreRefused) {
     const std::string whole = first_of(good);
     const std::vector<std::size_t> chunks = exr_shape(good).chunks;
     const ExrShape shape = exr_shape(good);
-    const std::size_t first = shape.of(ExrFieldKind::table_entry)[0]->at;
+    const std::size_t first = shape.of(ExrFieldKind::table_entry).at(0)->at;
     const std::uint64_t huge = ~std::uint64_t(0) >> 1;
     for (const std::uint64_t offset : {std::uint64_t(0), std::uint64_t(8), std::uint64_t(shape.table_at),
                                        std::uint64_t(good.size()), huge, ~std::uint64_t(0)}) {
@@ -216,7 +216,7 @@ TEST_F(FilesCli, DeepCountsThatLieAreRefused) {
   const std::string& good = file_named("deep");
   const std::string whole = first_of(good);
   const ExrShape plain = exr_shape(good);
-  const std::size_t counts = plain.of(ExrFieldKind::chunk_bytes)[0]->at;
+  const std::size_t counts = plain.of(ExrFieldKind::chunk_bytes).at(0)->at;
   for (const std::int32_t count : {-1, 2147483647, 5})
     for (const std::size_t pixel : {0u, 10u}) {
       SCOPED_TRACE(std::to_string(count) + " at " + std::to_string(pixel));
