@@ -58,7 +58,8 @@ struct History {
   std::vector<Plane<glm::vec4>> companions;  ///< resolved, in the order of Present::companions
   Plane<float> total;                        ///< sum of sample weights so far; 0: no valid data
   Plane<float> spread;  ///< sum of squared normalized weights; 1/spread is the effective sample count
-  Plane<glm::vec4> remainder;  ///< what rounding took from color; empty unless keeps_remainder() (resolve/remainder.h)
+  /// What rounding took from color; empty unless keeps_remainder() (resolve/remainder.h).
+  Plane<glm::vec4> remainder;
   // Of the frame it was made from; each empty unless a test needs it.
   Plane<float> depth;
   Plane<glm::vec2> motion;
