@@ -33,10 +33,16 @@ void write_lists(const ResolveJob& job, const RerenderList& list) {
     write_file(path, path.ends_with(".csv") ? rerender_csv(list) : rerender_json(list, version()));
 }
 
+/// Where nobody has looked yet whether the report's name is that of a frame, it must not be taken for one.
+bool may_write_report(const RunReport& report, const std::string& path, bool checked) {
+  if (checked) return true;
+  return report.exit_code != int(ExitCode::usage) && !path.ends_with(".exr") && is_free_for_report(path);
+}
+
 /// Writes the report of a run that did not come to its end; what happened matters more than that this may fail, too.
 void report_end(const Settings& settings, RunReport& report, bool checked, Progress& progress) {
   const std::string& path = settings.job.report;
-  if (path.empty() || !(checked || is_free_for_report(path))) return;
+  if (path.empty() || !may_write_report(report, path, checked)) return;
   try {
     write_file(path, report_text(report));
   } catch (const Failure& failure) {

@@ -91,13 +91,19 @@ TEST_F(Faults, KilledAtAnyMomentAndResumedToTheSameBytes) {
 TEST_F(Faults, LeftoversGoAndWhatIsBeingWrittenStays) {
   write_large(3);
   Running running(line(), folder.path());
-  std::size_t living = 0;
-  while (!running.finished() && living == 0) {
-    while (!running.finished() && temporaries() == 0) std::this_thread::sleep_for(std::chrono::microseconds(50));
-    if (!running.stop()) break;  // alive, and in the middle of a file, unless it was just done with it
-    living = temporaries();
-    if (living == 0) running.send(SIGCONT);
+  // Alive, and in the middle of a file: with bytes in it, since between its making and its lock it may be taken away.
+  std::string written;
+  while (!running.finished() && written.empty()) {
+    for (const std::string& name : files_below(folder / "o"))
+      if (name.ends_with(".tmp")) written = bytes_of(folder / ("o/" + name));
+    if (written.empty()) continue;
+    ASSERT_TRUE(running.stop());
+    if (temporaries() > 0) break;
+    running.send(SIGCONT);
+    written.clear();
   }
+  const std::size_t living = temporaries();
+  ASSERT_EQ(living, 1u);
   std::ofstream(folder / "o/.o.0001.exr.varve-00000000-1-0.tmp") << "of another machine, a moment ago";
   std::ofstream(folder / "o/.notes.tmp") << "not ours";
   ASSERT_EQ(run({"-f", "1"}).code, 0);
