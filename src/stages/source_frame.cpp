@@ -97,7 +97,8 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, const Nei
       CameraVectors not_counted;
       if (plan.use_cameras) use_cameras(source, present, subject, options, neighbors, not_counted, workers);
     };
-    return read_extras(options, source.headers, presents, read, needs_of(options), move, workers);
+    return read_extras(options, source.headers, presents, read, needs_of(options),
+                       options.job.parameters.accumulator == Accumulator::gather, move, workers);
   });
   // The gather filters by itself, from true positions.
   const Parameters& p = options.job.parameters;
