@@ -6,7 +6,7 @@ namespace {
 constexpr Aov kAovs[] = {
     {"count", "", PixelType::float32, "samples", "0 and up", "viridis", 0, 20,
      "Effective sample count: one over the sum of squared weights of all samples in the pixel. 0 where nothing valid "
-     "was seen."},
+     "was seen. Of --accumulator recursive and two-sided, samples of --extra count as one with the frame's own."},
     {"clip", "", PixelType::float32, "relative", "0 to 2", "inferno", 0, 1,
      "Clip distance: how far rectification moved the history (under --rule off: would have moved it), in RGB, over the "
      "longer of what it was and what it became.",

@@ -70,18 +70,18 @@ void check_job(const ResolveJob& job, const SequenceInfo& info) {
       refuse("--extra adds samples to flat colors, and this one is deep; flatten it first, with varve resolve");
 }
 
-/// Why a color of the file cannot add to one of the frame; "" if it can.
+/// Why a color of the file cannot add to one of the frame; "" if it can. It may have more than the frame.
 std::string misfit(const Subject& frame, const Subject& extra) {
   const auto differ = [](const auto& a, const auto& b) { return a.has_value() != b.has_value(); };
   for (std::size_t k = 0; k < 4; ++k)
     if (differ(frame.color[k], extra.color[k])) return std::string("its channels differ in ") + "RGBA"[k];
-  if (differ(frame.depth, extra.depth)) return "one of both has no depth";
-  if (differ(frame.backward, extra.backward) || differ(frame.forward, extra.forward))
-    return "their motion vectors differ";
-  if (differ(frame.id, extra.id)) return "one of both has no id";
-  if (differ(frame.normal, extra.normal)) return "one of both has no normal";
-  if (differ(frame.reactive, extra.reactive) || differ(frame.responsive, extra.responsive))
-    return "one of both has no mask";
+  const auto lacks = [](const auto& a, const auto& b) { return a.has_value() && !b.has_value(); };
+  if (lacks(frame.depth, extra.depth)) return "it has no depth";
+  if (lacks(frame.backward, extra.backward) || lacks(frame.forward, extra.forward))
+    return "it lacks vectors that the frame has";
+  if (lacks(frame.id, extra.id)) return "it has no id";
+  if (lacks(frame.normal, extra.normal)) return "it has no normal";
+  if (lacks(frame.reactive, extra.reactive) || lacks(frame.responsive, extra.responsive)) return "it has no mask";
   const auto same = [&](const Companion& c, const Companion& d) {
     for (std::size_t k = 0; k < 4; ++k)
       if (differ(c.channels[k], d.channels[k])) return false;

@@ -44,7 +44,8 @@ std::size_t waiting_bytes_per_pixel(const Parameters& parameters, const OutputRe
   const auto asks = [&](std::string_view name) {
     return std::any_of(planned.begin(), planned.end(), [&](const Aov* aov) { return aov->name == name; });
   };
-  const std::size_t bytes = 16 + 4 + 4 + (asks("clip") ? 4 : 0) + (asks("reject") || asks("reject-future") ? 4 : 0);
+  const std::size_t bytes =
+      16 + 4 + 4 + (asks("clip") ? 4 : 0) + (asks("reject") || asks("reject-future") || asks("evaluation") ? 4 : 0);
   return bytes * std::size_t(look_ahead_frames(parameters.two_sided, parameters.recursive.alpha));
 }
 

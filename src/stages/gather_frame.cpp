@@ -41,8 +41,10 @@ struct SubjectFrames {
   }
   bool is_there(std::size_t i) const { return !further || !present(i).color.empty(); }
   bool is_whole(std::size_t i) const {
+    if (!further) return true;
     const std::vector<std::uint8_t>& rows = present(i).rows_valid;
-    return !further || (is_there(i) && std::find(rows.begin(), rows.end(), 0) == rows.end());
+    return is_there(i) && present(i).color.window() == leader->present(i).color.window() &&
+           std::find(rows.begin(), rows.end(), 0) == rows.end();
   }
   /// The sample that those of frame `i` lead to in frame `to`.
   const SubjectFrames& led_to(std::size_t i, std::size_t to) const {

@@ -7,18 +7,16 @@
 namespace varve {
 namespace {
 
-/// One further sample of the pixels of a frame, of one subject, while crops are put into it.
-struct Canvas {
-  Present present;
-  std::vector<Window> covered;
-};
-
-/// The crops that a canvas has, for the frame.
+/// Crops that become one present.
 struct Group {
   std::optional<Jitter> jitter;
   std::vector<const ExtraCrop*> crops;
+  Window around;           // all of them
+  std::size_t pixels = 0;  // in all of them
 
-  bool takes(const ExtraCrop& crop) const {
+  bool takes(const ExtraCrop& crop, bool compact) const {
+    // What lies between them takes room as well.
+    if (compact && unite(around, crop.window).pixels() > 2 * (pixels + crop.window.pixels())) return false;
     const bool same = jitter.has_value() == crop.jitter.has_value() &&
                       (!jitter || (jitter->x == crop.jitter->x && jitter->y == crop.jitter->y));
     return same && std::all_of(crops.begin(), crops.end(),
@@ -26,12 +24,14 @@ struct Group {
   }
 };
 
-std::vector<Group> group_crops(const std::vector<ExtraCrop>& crops) {
+std::vector<Group> group_crops(const std::vector<ExtraCrop>& crops, bool compact) {
   std::vector<Group> groups;
   for (const ExtraCrop& crop : crops) {
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.takes(crop); });
-    if (group == groups.end()) group = groups.insert(groups.end(), {crop.jitter, {}});
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.takes(crop, compact); });
+    if (group == groups.end()) group = groups.insert(groups.end(), {crop.jitter, {}, {}, 0});
     group->crops.push_back(&crop);
+    group->around = unite(group->around, crop.window);
+    group->pixels += crop.window.pixels();
   }
   return groups;
 }
@@ -70,7 +70,7 @@ void paste(Present& canvas, const Present& crop, const ExtraCrop& where, const W
 
 /// Everywhere but in the crops it is what the frame's own sample is, and no sample.
 void fill_around(Present& canvas, const Present& own, const std::vector<Window>& covered, Workers& workers) {
-  const Window& w = own.color.window();
+  const Window w = canvas.color.window();
   Plane<std::uint8_t> inside(w, 0, 0);
   for (const Window& crop : covered) {
     const Window c = intersect(crop, w);
@@ -82,13 +82,11 @@ void fill_around(Present& canvas, const Present& own, const std::vector<Window>&
       to = {};
       return;
     }
-    if (to.empty()) {
-      to = from.clone();
-      return;
-    }
+    const bool lacks = to.empty();
+    if (lacks) to = std::decay_t<decltype(to)>(w, from.border());
     workers.for_rows(w.y0, w.y1, [&](int y) {
       for (int x = w.x0; x < w.x1; ++x)
-        if (inside.at(x, y) == 0) to.at(x, y) = from.at(x, y);
+        if (lacks || inside.at(x, y) == 0) to.at(x, y) = from.at(x, y);
     });
   });
   canvas.rows_valid.assign(std::size_t(w.height()), 1);
@@ -112,40 +110,52 @@ ExtraFile read_file(const SourceOptions& options, const std::string& path, int f
   return file;
 }
 
+/// What it has of one output, in its own pixels.
+Present read_crop(const SourceOptions& options, const ExtraFile& file, const ExtraCrop& crop, const Subject& subject,
+                  const Window& display, const ReadOptions& read, Workers& workers) {
+  const std::vector<ColorOutput>& outputs = file.headers.outputs;
+  const auto output = std::find_if(outputs.begin(), outputs.end(), [&](const ColorOutput& other) {
+    return other.subject.layer == subject.layer && other.subject.view == subject.view;
+  });
+  const auto changed = [&] {
+    return Failure(ExitCode::inconsistent,
+                   "'" + crop.path + "' is not what it was when the work began; start again when it is complete");
+  };
+  if (output == outputs.end() || crop.place >= output->inputs.size()) throw changed();
+  const Subject& sample = file.headers.subjects[output->inputs[crop.place]];
+  const Part& part = file.headers.files.front().parts[std::size_t(part_of(sample))];
+  const Window& w = crop.window;
+  const Window taken{w.x0 - crop.shift_x, w.y0 - crop.shift_y, w.x1 - crop.shift_x, w.y1 - crop.shift_y};
+  if (intersect(taken, part.data_window) != taken) throw changed();
+  std::size_t vectors_bad = 0;
+  return read_present(sample, file.pixels, part.data_window, display, read, options.into_working_space, vectors_bad,
+                      workers);
+}
+
 }  // namespace
 
 std::vector<std::vector<Present>> read_extras(const SourceOptions& options, const FrameHeaders& headers,
                                               const std::vector<Present>& own, const ReadOptions& read,
-                                              const ChannelNeeds& needs,
+                                              const ChannelNeeds& needs, bool compact,
                                               const std::function<void(Present&, std::size_t subject)>& move,
                                               Workers& workers) {
   std::vector<std::vector<Present>> extras;
   const auto found = options.extras.frames.find(headers.frame);
   if (found == options.extras.frames.end()) return extras;
   extras.resize(headers.outputs.size());
-  for (const Group& group : group_crops(found->second)) {
+  for (const Group& group : group_crops(found->second, compact)) {
     std::vector<Present> canvases(headers.outputs.size());
     std::vector<Window> covered;
     for (const ExtraCrop* crop : group.crops) {
       const ExtraFile file = read_file(options, crop->path, headers.frame, needs, workers);
       for (std::size_t o = 0; o < headers.outputs.size(); ++o) {
-        const Subject& subject = headers.outputs[o].subject;
-        const auto output =
-            std::find_if(file.headers.outputs.begin(), file.headers.outputs.end(), [&](const ColorOutput& other) {
-              return other.subject.layer == subject.layer && other.subject.view == subject.view;
-            });
-        if (output == file.headers.outputs.end() || crop->place >= output->inputs.size())
-          throw Failure(ExitCode::inconsistent, "'" + crop->path + "' is not what it was when the work began");
-        const Subject& sample = file.headers.subjects[output->inputs[crop->place]];
-        const Part& part = file.headers.files.front().parts[std::size_t(part_of(sample))];
         const Window& window = own[headers.outputs[o].inputs.front()].color.window();
-        std::size_t vectors_bad = 0;
-        const Present pixels = read_present(sample, file.pixels, part.data_window,
-                                            headers.files.front().parts[std::size_t(subject.place.part)].display_window,
-                                            read, options.into_working_space, vectors_bad, workers);
+        const Window& display =
+            headers.files.front().parts[std::size_t(headers.outputs[o].subject.place.part)].display_window;
+        const Present pixels = read_crop(options, file, *crop, headers.outputs[o].subject, display, read, workers);
         ExtraCrop inside = *crop;
         inside.window = intersect(crop->window, window);
-        paste(canvases[o], pixels, inside, window);
+        paste(canvases[o], pixels, inside, compact ? intersect(group.around, window) : window);
       }
       covered.push_back(crop->window);
     }

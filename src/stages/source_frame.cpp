@@ -101,7 +101,8 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, const Nei
       CameraVectors not_counted;
       if (plan.use_cameras) use_cameras(source, present, subject, options, neighbors, not_counted, workers);
     };
-    return read_extras(options, source.headers, presents, read, needs_of(options), move, workers);
+    return read_extras(options, source.headers, presents, read, needs_of(options),
+                       options.job.parameters.accumulator == Accumulator::gather, move, workers);
   });
   // Who takes samples at their true positions filters by itself, and keeps further ones apart.
   const Parameters& p = options.job.parameters;

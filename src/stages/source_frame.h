@@ -21,7 +21,7 @@ struct SourceFrame {
   std::vector<Present> presents;             ///< one for each of accumulated_subjects(): a subject, or several combined
   std::vector<CamerasAround> cameras;        ///< one for each of headers.subjects; empty without
   std::vector<std::vector<Present>> extras;  ///< for each of headers.outputs further samples that are not in presents,
-                                             ///< each valid in some pixels only; empty where there are none
+                                             ///< with a window of their own, valid in some pixels only; of the gather
   CameraVectors by_camera;
   std::size_t vectors_bad = 0;        ///< vectors that cannot be used
   DeepCounts deep;                    ///< samples of deep parts that were flattened

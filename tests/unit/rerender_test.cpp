@@ -154,7 +154,7 @@ TEST(RerenderList, HoldsItsBudgetAndTakesTheBestTilesFirst) {
   }
   EXPECT_GT(last_gain, 0);
   // Where little may be spent, it goes to where reconstruction failed.
-  const RerenderRequest small{.tile = 8, .budget = 0.2, .overhead = 0, .files = {}};
+  const RerenderRequest small{.tile = 8, .budget = 0.02, .overhead = 0, .files = {}};
   for (const RerenderEntry& e : make_rerender_list(make_tiles(small, 3), {0, 0, 72, 50}, small, {}).entries)
     EXPECT_GT(e.what.failed, 0u);
 }
