@@ -43,6 +43,18 @@ Value<Settings> aovs_value() {
   return value;
 }
 
+Value<Settings> assumed_jitter() {
+  Value<Settings> value;
+  value.allowed = "a pattern such as halton23:16";
+  value.read = [](Settings& s, std::string_view text) {
+    if (!parse_pattern(text)) return false;
+    s.job.jitter = "auto," + std::string(text);
+    return true;
+  };
+  value.show = [](const Settings&) { return std::string(); };
+  return value;
+}
+
 Value<Settings> samples_value() {
   Value<Settings> value = list(
       [](Settings& s, const std::string& item) {

@@ -94,6 +94,9 @@ Value<Settings> aovs_value();
 Value<Settings> convention_value();
 /// What is done with samples, and which they are.
 Value<Settings> samples_value();
+
+/// A jitter pattern for frames that do not tell theirs.
+Value<Settings> assumed_jitter();
 /// Sets all parameters.
 Value<Settings> preset_value();
 /// 320x180.

@@ -149,6 +149,10 @@ void add_channel_options(std::vector<Option>& rows) {
            [](auto& s) -> auto& { return s.job.jitter; },
            "auto, none, pixels, a CSV file or a pattern such as halton23:16")})
       .completes = Completes::files;
+  add({"assume-jitter", 0, "PATTERN", kInput, kExpert, group,
+       "The pattern that the renderer is taken to have used where --jitter auto finds nothing; see `varve help "
+       "patterns`.",
+       assumed_jitter()});
   add({"camera", 0, "SOURCE", kInput, kAdvanced, group,
        "Where the camera of each frame is told. auto reads worldToCamera and worldToNDC, or view and proj in the JSON "
        "of Cycles' Note. A CSV file has the columns frame, v0 to v15 (world to camera, row major, looking along -z, y "

@@ -136,6 +136,14 @@ std::optional<Jitter> jitter_in_header(const Part& part) {
 
 JitterSource parse_jitter_source(const std::string& text) {
   if (text == "auto") return {};
+  if (text.starts_with("auto,")) {
+    const std::optional<NamedPattern> named = parse_pattern(std::string_view(text).substr(5));
+    if (!named)
+      throw Failure(ExitCode::usage, "--assume-jitter " + text.substr(5) + ": unknown; see varve help patterns");
+    JitterSource source = pattern_source(*named);
+    source.kind = JitterSource::Kind::automatic;
+    return source;
+  }
   JitterSource source;
   source.kind = JitterSource::Kind::none;
   if (text == "none") return source;
@@ -192,6 +200,7 @@ std::optional<Jitter> jitter_of(const JitterSource& source, const Part& part, in
       break;
   }
   const std::optional<Jitter> jitter = jitter_in_header(part);
+  if (!jitter && !source.points.empty()) return pattern_point(source.points, frame);
   if (jitter && !within_a_pixel(*jitter))
     throw Failure(ExitCode::inconsistent,
                   "frame " + std::to_string(frame) + ": the jitter in the header" +

@@ -13,15 +13,16 @@
 namespace varve {
 
 /// What `--jitter` names: `auto`, `none`, `pixels`, a CSV file (frame,jx,jy), or a pattern such as `halton23:16`
-/// (the index of frame f is f modulo the length, 1-based as renderers count: f = 1 is the first point).
+/// (the index of frame f is f modulo the length, 1-based as renderers count: f = 1 is the first point); or
+/// `auto,PATTERN`: what the frames say, else the pattern.
 struct JitterSource {
   enum class Kind { automatic, none, table, pattern, pixels } kind = Kind::automatic;
   std::map<int, Jitter> table;                    ///< by frame, of sample 0
   std::map<std::pair<int, int>, Jitter> further;  ///< by frame and sample, of the others
   bool by_sample = false;                         ///< the table has a column for samples
-  const JitterPattern* pattern = nullptr;
-  std::vector<Jitter> points;  ///< of the pattern, with seed and direction 0
-  std::string description;     ///< for probe and logs: where the numbers come from
+  const JitterPattern* pattern = nullptr;         ///< of automatic: what is assumed where the frames do not tell
+  std::vector<Jitter> points;                     ///< of the pattern, with seed and direction 0
+  std::string description;                        ///< for probe and logs: where the numbers come from
 };
 
 /// Throws Failure(usage) for an unknown name, Failure(input) with path and line for a bad CSV.

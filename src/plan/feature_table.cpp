@@ -206,7 +206,7 @@ constexpr Feature kFeatures[] = {
     {technique, 109, "Y", "How much repeated bilinear reading blurs", Reach::option,
      "--aov=blur-variance with --history-filter=bilinear; --blur-limit"},
     {technique, 110, "Y", "A history of twice the resolution", Reach::planned,
-     "the history has the resolution of the frames"},
+     "the four histories hold it; the picture has the resolution of the frames"},
     {technique, 111, "Y", "Four sub-pixel histories, one new in each frame", Reach::option, "--accumulator=subpixel"},
     {technique, 112, "Y", "Reconstruct from the samples of all four under a tent", Reach::option,
      "--subpixel-weights=first-order --subpixel-weights=plain --subpixel-radius"},

@@ -149,10 +149,6 @@ std::vector<Knob> knobs() {
       {"blur-bound", "WORD", quarters, expert, "What --blur-limit goes by.",
        word(
            [](auto& p) -> auto& { return p.subpixel.bound; }, kBlurBounds)},
-      {"scale", "FACTOR", quarters, advanced,
-       "Size of the picture: 1 writes the mean of the four quarters of a pixel, 2 each quarter as a pixel of its own.",
-       number([](auto& p) -> auto& { return p.subpixel.scale; }, {1, 2})},
-
       {"look-ahead", "FRAMES", sides, advanced,
        "Frames that are looked at, at least, before and after each one; also the length of the blocks they are worked "
        "in. "

@@ -50,7 +50,7 @@ constexpr Preset kPresets[] = {
     {"yang", "Yang, Nehab, Sander, Sitthi-amorn, Lawrence and Hoppe 2009, Amortized Supersampling",
      "Four sub-pixel histories, blur and lag bounded, nothing but depth to drop history; needs jitter and depth.",
      "accumulator=subpixel dilation=none alpha=0.15 alpha-rule=mean disocclusion=depth sample-filter=none "
-     "blur-limit=0.25 residual-limit=0.3 residual-window=7 subpixel-radius=0.5 subpixel-weights=first-order "
+     "blur-limit=0.3 residual-limit=0.3 residual-window=7 subpixel-radius=0.5 subpixel-weights=second-order "
      "blur-bound=tracked box=none moments=direct hull-passes=64 clip-discount=off"},
     {"lopez", "Lopez, The Holy Trail; defaults of the public code MSAAFilter",
      "A tenth of the present, the vector of the nearest surface, sharp history, a wide variance box around the mean.",

@@ -122,6 +122,7 @@ struct Survey {
         break;
       case JitterSource::Kind::automatic:
         info.jitter_source = info.frames_with_jitter == 0 ? "none found" : "from the headers" + in;
+        if (!jitter.points.empty()) info.jitter_source = "from the headers, or assumed: " + jitter.description;
         break;
       default:
         info.jitter_source = jitter.description + in;
@@ -133,6 +134,11 @@ void note_jitter(const InputSequence& input, const JitterSource& jitter, Sequenc
   if (info.frames_with_jitter > 0 && info.frames_with_jitter < int(info.frames.size()))
     info.notes.push_back("the jitter is known for " + std::to_string(info.frames_with_jitter) + " of " +
                          std::to_string(info.frames.size()) + " frames only");
+  if (jitter.kind == JitterSource::Kind::automatic && !jitter.points.empty())
+    info.notes.push_back(
+        "the jitter is assumed to be " + jitter.description +
+        ", as --assume-jitter says, where the headers do not tell it; varve probe --check-jitter holds "
+        "it against the pixels");
   if (jitter.kind != JitterSource::Kind::automatic || info.frames_with_jitter > 0) return;
   const std::filesystem::path beside =
       std::filesystem::path(input.color.path(info.frames.front())).parent_path() / "jitter.csv";

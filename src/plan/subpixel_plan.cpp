@@ -83,9 +83,7 @@ std::vector<PlannedPass> subpixel_passes(const SequenceInfo& info, const Paramet
            ? "the present weighs " + short_number(r.alpha) + " in its quarter"
            : "the present weighs 1/n in its quarter for n samples seen, at least " + short_number(r.alpha)});
   passes.push_back(bounds_pass(parameters));
-  passes.push_back({"picture", true,
-                    parameters.subpixel.scale > 1 ? "the four quarters become pixels: twice the width and height"
-                                                  : "each pixel is the mean of its four quarters as they are now"});
+  passes.push_back({"picture", true, "each pixel is the mean of its four quarters as they are now"});
   return passes;
 }
 
@@ -119,11 +117,7 @@ void check_subpixel(const SequenceInfo& info, const Parameters& parameters) {
         ExitCode::usage,
         "--blur-limit and --residual-limit bound the weight of the present, which this --accumulator does not "
         "choose; give 0, or --accumulator recursive or subpixel");
-  if (!four) {
-    if (parameters.subpixel.scale > 1)
-      throw Failure(ExitCode::usage, "--scale 2 writes the quarters of a pixel; give --accumulator subpixel with it");
-    return;
-  }
+  if (!four) return;
   if (r.sample_filter != SampleFilter::none || r.unjitter != Unjitter::none)
     throw Failure(ExitCode::usage,
                   "--accumulator subpixel takes samples where they lie; give --sample-filter none and --unjitter none");
@@ -162,8 +156,7 @@ std::size_t subpixel_bytes_per_pixel(const Parameters& parameters, std::size_t c
   const std::size_t buffer = 16 + 4 + 4 + 12 + 8 + 16 * companions + (r.disocclusion == Disocclusion::depth ? 4 : 0) +
                              (r.reject.id != IdTest::off ? 4 : 0) + (r.reject.normal_angle > 0 ? 12 : 0);
   const std::size_t residual = r.residual_limit > 0 ? 20 : 0;
-  const std::size_t quarters = parameters.subpixel.scale > 1 ? (4 + 4) * 16 * (1 + companions) : 0;
-  return 5 * buffer + residual + quarters;  // one more while a sample is blended in
+  return 5 * buffer + residual;  // one more while a sample is blended in
 }
 
 double subpixel_nanoseconds(const Parameters& parameters, std::size_t companions) {
