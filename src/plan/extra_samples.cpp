@@ -40,7 +40,8 @@ bool has_numbers(const FileHeader& file) {
 void check_job(const ResolveJob& job, const SequenceInfo& info) {
   const auto refuse = [](const char* what) { throw Failure(ExitCode::usage, what); };
   const SampleRequest& samples = job.roles.samples;
-  const bool gathers = job.parameters.accumulator == Accumulator::gather;
+  const bool gathers = job.parameters.accumulator == Accumulator::gather ||
+                       job.parameters.accumulator == Accumulator::subpixel;  // samples at their own places
   if (job.roles.combine_layers.mode != LayersMode::apart)
     refuse(
         "--extra adds samples to one color, and --layers makes it of several; resolve each layer with its own "
