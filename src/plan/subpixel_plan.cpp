@@ -160,7 +160,7 @@ std::size_t subpixel_bytes_per_pixel(const Parameters& parameters, std::size_t c
 }
 
 double subpixel_nanoseconds(const Parameters& parameters, std::size_t companions) {
-  constexpr double kQuarter = 400, kPlane = 120;  // measured with first-order weights; see sequences/yang.md
+  constexpr double kQuarter = 400, kPlane = 120;  // set by one measurement of the whole program
   const double residual = parameters.recursive.residual_limit > 0 ? 12.0 * parameters.recursive.residual_window : 0.0;
   return 4 * (kQuarter + kPlane * double(companions)) + residual;
 }
