@@ -90,7 +90,8 @@ SourceFrame read_source_frame(const SourceOptions& options, int frame, const Nei
   // Who takes samples at their true positions filters by itself.
   const Parameters& p = options.job.parameters;
   const SampleFilter filter = p.accumulator == Accumulator::gather || p.accumulator == Accumulator::subpixel
-                                  ? SampleFilter::none : p.recursive.sample_filter;
+                                  ? SampleFilter::none
+                                  : p.recursive.sample_filter;
   source.presents = combine_presents(source.headers, std::move(presents),
                                      {options.job.roles, options.show_combined, filter}, workers);
   if (options.keep_pixels)
