@@ -160,9 +160,10 @@ std::size_t subpixel_bytes_per_pixel(const Parameters& parameters, std::size_t c
 }
 
 double subpixel_nanoseconds(const Parameters& parameters, std::size_t companions) {
-  constexpr double kQuarter = 400, kPlane = 120;  // measured with first-order weights; see sequences/yang.md
+  const bool second = parameters.subpixel.weights == SubpixelWeights::second_order;
+  const double quarter = second ? 1400 : 700, plane = 120;  // set by one measurement of the whole program
   const double residual = parameters.recursive.residual_limit > 0 ? 12.0 * parameters.recursive.residual_window : 0.0;
-  return 4 * (kQuarter + kPlane * double(companions)) + residual;
+  return 4 * (quarter + plane * double(companions)) + residual;
 }
 
 }  // namespace varve

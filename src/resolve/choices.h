@@ -9,8 +9,8 @@ namespace varve {
 /// exponential histories in the quarters of a pixel, one of them new in each frame (Yang 2009).
 enum class Accumulator { recursive, two_sided, gather, subpixel };
 
-/// How the samples of the four histories are weighed around a place: a tent, normalized; the same so that their centroid
-/// is the place; or one bilinear fetch in each history.
+/// How the samples of the four histories are weighed around a place: a tent, normalized; the same so that their
+/// centroid is the place; or one bilinear fetch in each history.
 enum class SubpixelWeights { plain, first_order, second_order, bilinear };
 
 /// Where the bound on the blur of the four histories comes from: the kernel of each pixel as it came about, or a table

@@ -66,7 +66,7 @@ bool fit_plane(std::vector<Sample>& samples) {
   }
   if (!((xx * yy - xy * xy) * 1e6 > (xx + yy) * (xx + yy))) return false;
   std::array<double, 3> c{};
-  if (!first_unit_solution(m, c) || !(c[0] * w < 1e6)) return false;
+  if (!first_unit_solution(m, c) || !(c[0] > 0 && c[0] * w < 1e6)) return false;
   double gain = 0;
   for (Sample& s : samples) {
     s.weight = s.tent * (c[0] + c[1] * s.center.x + c[2] * s.center.y);

@@ -50,6 +50,8 @@ TEST(StatePlanes, NoMemberIsForgotten) {
   EXPECT_EQ(visited<History>(), members<History>()) << remedy;
   EXPECT_EQ(visited<ForwardMemory>(), members<ForwardMemory>()) << remedy;
   EXPECT_EQ(visited<SeenPlanes>(), members<SeenPlanes>()) << remedy;
+  EXPECT_EQ(visited<SubpixelBuffer>(), members<SubpixelBuffer>()) << remedy;
+  EXPECT_EQ(visited<SubpixelHistory>(), members<SubpixelHistory>()) << remedy;
   EXPECT_EQ(visited<SubjectState>(), members<SubjectState>()) << remedy;
 }
 
@@ -78,6 +80,7 @@ struct Fill {
     for (std::uint8_t& byte : bytes) byte = std::uint8_t(random() % 2);
   }
   void operator()(const std::string&, glm::dvec2& pair) const { pair = {double(random()), 0.25}; }
+  void operator()(const std::string&, int& number) const { number = int(random() % 100); }
 };
 
 /// All leaves as text with their names.
@@ -102,6 +105,7 @@ struct Print {
   void operator()(const std::string& name, const glm::dvec2& pair) const {
     leaves[name] = std::to_string(pair.x) + " " + std::to_string(pair.y);
   }
+  void operator()(const std::string& name, int number) const { leaves[name] = std::to_string(number); }
 };
 
 std::map<std::string, std::string> leaves_of(const SubjectState& state) {

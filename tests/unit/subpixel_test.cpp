@@ -389,7 +389,7 @@ TEST(Subpixel, TheBlurThatIsTrackedIsThatOfAnEdge) {
       frame.jitter = jitter_of_frame(i);
       for (int y = 0; y < w.y1; ++y)
         for (int x = 0; x < w.x1; ++x) frame.color.at(x, y) = glm::vec4(x + frame.jitter->x >= place ? 1.0f : 0.0f);
-      frame.motion = Plane<glm::vec2>(w, 0, glm::vec2(-0.37f, -0.21f));
+      frame.motion = Plane<glm::vec2>(w, 0, glm::vec2(-0.37f, -0.37f));
       sanitize(frame, workers);
       SubpixelStep step = step_on(frame, std::move(history), s, workers);
       history = std::move(step.history);
