@@ -11,7 +11,6 @@ namespace {
 /// One quarter of one pixel as it is shown.
 struct Shown {
   bool known = false;
-  double total = 0, spread = 0;
   glm::dvec3 moments{0.0};
   Reconstruction from;  ///< without samples where the history is of the present frame
 };
@@ -28,18 +27,13 @@ Shown show_quarter(const SubpixelHistory& history, const Present& present, const
   const SubpixelBuffer& q = history.quadrants[k];
   if (!q.empty() && q.way.empty() && q.total.at(x, y) > 0) {
     s.known = true;
-    s.total = double(q.total.at(x, y));
-    s.spread = double(q.spread.at(x, y));
     s.moments = glm::dvec3(q.moments.at(x, y));
     return s;
   }
   s.from = reconstruct(history, present, subpixel, recursive, k, x, y);
   if (!s.from.found) return s;
-  const ReconstructedWeights w = weighed_history(history, s.from);
   s.known = true;
-  s.total = w.total;
-  s.spread = w.spread;
-  s.moments = w.moments;
+  s.moments = weighed_history(history, s.from).moments;
   return s;
 }
 
@@ -60,6 +54,41 @@ void show_plane(const SubpixelHistory& history, const Quarters& quarters, int x,
     sum += color - pivot;
   }
   to = n > 0 ? narrow(pivot + sum / double(n)) : otherwise;
+}
+
+/// What the picture has seen: samples of different histories are different samples, and a history that stands in for
+/// the quarters of others is seen once.
+struct Seen {
+  double total = 0, spread = 0;
+};
+Seen seen_by(const SubpixelHistory& history, const Quarters& quarters, int known, int x, int y) {
+  std::array<double, kQuadrants> share{}, total{}, spread{};  // of the picture, by history
+  for (std::size_t k = 0; k < kQuadrants; ++k) {
+    const Shown& q = quarters[k];
+    if (!q.known) continue;
+    const auto add = [&](std::size_t from, int tx, int ty, double weight) {
+      share[from] += weight;
+      total[from] += weight * double(history.quadrants[from].total.at(tx, ty));
+      spread[from] += weight * double(history.quadrants[from].spread.at(tx, ty));
+    };
+    if (!q.from.found) {
+      add(k, x, y, 1);
+      continue;
+    }
+    double tents = 0;
+    for (int i = 0; i < q.from.samples.count; ++i) tents += q.from.samples.tent[std::size_t(i)];
+    for (int i = 0; i < q.from.samples.count; ++i) {
+      const auto& texel = q.from.texel[std::size_t(i)];
+      add(texel.quadrant, texel.x, texel.y, q.from.samples.tent[std::size_t(i)] / tents);
+    }
+  }
+  Seen seen;
+  for (std::size_t k = 0; k < kQuadrants; ++k) {
+    if (!(share[k] > 0)) continue;
+    seen.total += total[k] / std::max(1.0, share[k]);
+    seen.spread += share[k] * spread[k] / (double(known) * known);
+  }
+  return seen;
 }
 
 /// Second moment of the picture's kernel around the pixel center, px^2, mean of both axes.
@@ -99,25 +128,21 @@ void show_subpixel(const Present& present, const SubpixelParameters& subpixel, c
   workers.for_rows(w.y0, w.y1, [&](int y) {
     for (int x = w.x0; x < w.x1; ++x) {
       Quarters quarters;
-      double total = 0, spread = 0;
       int known = 0;
       for (std::size_t k = 0; k < kQuadrants; ++k) {
         quarters[k] = show_quarter(history, present, subpixel, recursive, k, x, y);
-        if (!quarters[k].known) continue;
-        ++known;
-        total += quarters[k].total;
-        spread += quarters[k].spread;
+        known += quarters[k].known;
       }
+      const Seen seen = known > 0 ? seen_by(history, quarters, known, x, y) : Seen();
       show_plane(history, quarters, x, y, present.color.at(x, y), picture.color.at(x, y),
                  [](const SubpixelBuffer& q) -> const Plane<glm::vec4>& { return q.color; });
       for (std::size_t i = 0; i < picture.companions.size(); ++i) {
         show_plane(history, quarters, x, y, present.companions[i].at(x, y), picture.companions[i].at(x, y),
                    [i](const SubpixelBuffer& q) -> const Plane<glm::vec4>& { return q.companions[i]; });
       }
-      picture.total.at(x, y) = float(std::min(total, 1e6));
-      // Samples of different quarters are different samples.
-      picture.spread.at(x, y) = known > 0 ? float(spread / (double(known) * known)) : 0.0f;
-      if (!(total > 0)) picture.rows_valid[std::size_t(y - w.y0)] = 0;
+      picture.total.at(x, y) = float(std::min(seen.total, 1e6));
+      picture.spread.at(x, y) = float(seen.spread);
+      if (!(seen.total > 0)) picture.rows_valid[std::size_t(y - w.y0)] = 0;
       if (!diagnostics.weight.empty() && known > 0)
         diagnostics.weight.at(x, y) = 1 - (1 - diagnostics.weight.at(x, y)) / float(known);
       if (wanted.blur) diagnostics.blur.at(x, y) = float(second_moment(quarters));

@@ -153,7 +153,11 @@ TEST_F(Acceptance, T04_BadSamplesStayWithinTheFiltersAndAreCounted) {
     // A recursive pixel sees its window, and what stands in for a bad sample its neighbors. A gathered one sees the
     // light of the surface around, once for the pilot and once for the comparison with it.
     const bool gain = parameters.accumulator == Accumulator::gather && parameters.gather.gain;
-    const int support = gain ? parameters.gather.gain_window + 4 : 4;
+    // Four histories look at the residual around, and read each other, once more in every frame.
+    const bool four = parameters.accumulator == Accumulator::subpixel;
+    const int support = gain   ? parameters.gather.gain_window + 4
+                        : four ? 3 * (parameters.recursive.residual_window / 2 + 1) + 4
+                               : 4;
     for (int frame = 1; frame <= 5; ++frame) {
       const ReadFile a = read("good", frame), b = read("hurt", frame);
       each_pixel(a.data, [&](int x, int y) {

@@ -140,6 +140,12 @@ QuarterPixel reconstructed_quarter(const SubpixelHistory& history, const Present
     out.moments +=
         glm::dvec3(m.x + d.x, m.y + d.y, m.z + d.x * m.x + d.y * m.y + (d.x * d.x + d.y * d.y) / 2) * s.weight;
   }
+  for (const Sample& s : samples) {
+    const double part = s.tent / tents;
+    const std::size_t from = std::size_t(s.buffer - history.quadrants.data());
+    out.by_history[from] +=
+        part * glm::dvec3(1, double(s.buffer->total.at(s.x, s.y)), double(s.buffer->spread.at(s.x, s.y)));
+  }
   out.total /= tents;
   out.spread /= tents;
   out.moments.z = std::max(0.0, out.moments.z);
@@ -169,22 +175,26 @@ QuarterPixel picture_pixel(const SubpixelHistory& history, const Present& presen
     QuarterPixel quarter;
     if (!q.empty() && q.way.empty() && q.total.at(x, y) > 0)
       quarter = {true, glm::dvec4(q.color.at(x, y)), double(q.total.at(x, y)), double(q.spread.at(x, y)),
-                 glm::dvec3(q.moments.at(x, y))};
+                 glm::dvec3(q.moments.at(x, y))},
+      quarter.by_history[k] = glm::dvec3(1, quarter.total, quarter.spread);
     else
       quarter = reconstructed_quarter(history, present, subpixel, recursive, k, x, y);
     if (!quarter.known) continue;
     const glm::dvec2 m = kQuadrantMiddle[k];
     out.known = true;
     out.color += quarter.color;
-    out.total += quarter.total;
-    out.spread += quarter.spread;
+    for (std::size_t j = 0; j < kQuadrants; ++j) out.by_history[j] += quarter.by_history[j];
     out.moments.z +=
         quarter.moments.z + m.x * quarter.moments.x + m.y * quarter.moments.y + (m.x * m.x + m.y * m.y) / 2;
     n += 1;
   }
   if (!out.known) return {false, glm::dvec4(present.color.at(x, y)), 0, 0, glm::dvec3(0.0)};
   out.color /= n;
-  out.spread /= n * n;
+  // A history that stands in for several quarters is one set of samples, however often it is shown.
+  for (const glm::dvec3& h : out.by_history) {
+    out.total += h.x > 1 ? h.y / h.x : h.y;
+    out.spread += h.x / n * h.z / n;
+  }
   out.moments.z /= n;
   return out;
 }

@@ -11,6 +11,7 @@ struct QuarterPixel {
   glm::dvec4 color{0.0};
   double total = 0, spread = 0;
   glm::dvec3 moments{0.0};
+  std::array<glm::dvec3, kQuadrants> by_history{};  ///< share of each history in it; total and spread times that
 };
 
 /// What the histories, whose ways lead from the present, say of the middle of a quarter of pixel (x, y).

@@ -125,6 +125,7 @@ TEST_P(SubpixelTwin, AgreesOnOddSizes) {
             for (int k = 0; k < 3; ++k) ASSERT_NEAR(double(made.moments.at(x, y)[k]), now.moments[k], 1e-5);
           }
           ASSERT_NEAR(double(step.resolved.history.spread.at(x, y)), shown.spread, 1e-5);
+          ASSERT_NEAR(double(step.resolved.history.total.at(x, y)), shown.total, 1e-5 * (1 + shown.total));
           if (shown.known) {
             ASSERT_NEAR(double(step.resolved.diagnostics.blur.at(x, y)), shown.moments.z, 1e-5);
           }
