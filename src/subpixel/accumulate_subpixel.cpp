@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/held_float.h"
 #include "base/reject.h"
 #include "resolve/accumulate_row.h"
 #include "resolve/residual.h"
@@ -15,12 +16,6 @@
 
 namespace varve {
 namespace {
-
-float held_in_float(double v) { return float(std::clamp(v, -3.4028234663852886e38, 3.4028234663852886e38)); }
-
-glm::vec4 narrow(const glm::dvec4& c) {
-  return {held_in_float(c.r), held_in_float(c.g), held_in_float(c.b), held_in_float(c.a)};
-}
 
 /// What is the same for all pixels of a sample.
 struct Update {
@@ -67,10 +62,10 @@ unsigned predict_quarter(const Update& u, int x, int y, Prediction& prediction) 
   }
   const Reconstruction r = reconstruct(u.history, u.present, u.subpixel, u.recursive, u.quadrant, x, y);
   if (!r.found) return r.reject;
-  to.color.at(x, y) =
-      narrow(weighed_color(u.history, r, [](const SubpixelBuffer& q) -> const Plane<glm::vec4>& { return q.color; }));
+  to.color.at(x, y) = held_color(
+      weighed_color(u.history, r, [](const SubpixelBuffer& q) -> const Plane<glm::vec4>& { return q.color; }));
   for (std::size_t i = 0; i < to.companions.size(); ++i)
-    to.companions[i].at(x, y) = narrow(weighed_color(
+    to.companions[i].at(x, y) = held_color(weighed_color(
         u.history, r, [i](const SubpixelBuffer& q) -> const Plane<glm::vec4>& { return q.companions[i]; }));
   const ReconstructedWeights w = weighed_history(u.history, r);
   to.total.at(x, y) = float(w.total);
@@ -163,7 +158,7 @@ void blend(const Update& u, const Plane<float>& residual, Prediction& prediction
       if (!weight.empty()) weight.at(x, y) = float(1 - a);
       if (known && !valid) continue;
       const auto mix = [&](glm::vec4& history, const glm::vec4& sample) {
-        history = known ? narrow(glm::dvec4(history) + (glm::dvec4(sample) - glm::dvec4(history)) * a) : sample;
+        history = known ? held_color(glm::dvec4(history) + (glm::dvec4(sample) - glm::dvec4(history)) * a) : sample;
       };
       mix(to.color.at(x, y), u.present.color.at(x, y));
       for (std::size_t i = 0; i < to.companions.size(); ++i)

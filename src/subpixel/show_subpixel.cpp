@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/held_float.h"
 #include "subpixel/reconstruct.h"
 
 namespace varve {
@@ -14,12 +15,6 @@ struct Shown {
   glm::dvec3 moments{0.0};
   Reconstruction from;  ///< without samples where the history is of the present frame
 };
-
-float held_in_float(double v) { return float(std::clamp(v, -3.4028234663852886e38, 3.4028234663852886e38)); }
-
-glm::vec4 narrow(const glm::dvec4& c) {
-  return {held_in_float(c.r), held_in_float(c.g), held_in_float(c.b), held_in_float(c.a)};
-}
 
 Shown show_quarter(const SubpixelHistory& history, const Present& present, const SubpixelParameters& subpixel,
                    const RecursiveParameters& recursive, std::size_t k, int x, int y) {
@@ -53,7 +48,7 @@ void show_plane(const SubpixelHistory& history, const Quarters& quarters, int x,
     if (n++ == 0) pivot = color;
     sum += color - pivot;
   }
-  to = n > 0 ? narrow(pivot + sum / double(n)) : otherwise;
+  to = n > 0 ? held_color(pivot + sum / double(n)) : otherwise;
 }
 
 /// What the picture has seen: samples of different histories are different samples, and a history that stands in for

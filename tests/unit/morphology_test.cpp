@@ -48,7 +48,8 @@ TEST(Morphology, AgreesWithItsSlowTwin) {
     for (int y = w.y0; y < w.y1; ++y)
       for (int x = w.x0; x < w.x1; ++x) {
         const glm::dvec4 expected = reference::smoothed_pixel(color, x, y);
-        for (int k = 0; k < 4; ++k) ASSERT_NEAR(double(out.at(x, y)[k]), expected[k], 1e-5 * (1 + std::abs(expected[k]))) << x << ' ' << y;
+        for (int k = 0; k < 4; ++k)
+          ASSERT_NEAR(double(out.at(x, y)[k]), expected[k], 1e-5 * (1 + std::abs(expected[k]))) << x << ' ' << y;
       }
   }
 }
