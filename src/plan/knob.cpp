@@ -149,6 +149,11 @@ std::vector<Knob> knobs() {
       {"blur-bound", "WORD", quarters, expert, "What --blur-limit goes by.",
        word(
            [](auto& p) -> auto& { return p.subpixel.bound; }, kBlurBounds)},
+      {"scale", "FACTOR", quarters, advanced,
+       "Size of the picture: 1 writes the mean of the four quarters of a pixel, 2 each quarter as a pixel of its own. "
+       "Then channels that are not resolved, and planes of --aov, are repeated 2x2, and vectors that count pixels are "
+       "doubled with them; pictures of --preview stay at the size of the frames. Of --accumulator subpixel only.",
+       number([](auto& p) -> auto& { return p.subpixel.scale; }, {1, 2})},
       {"look-ahead", "FRAMES", sides, advanced,
        "Frames that are looked at, at least, before and after each one; also the length of the blocks they are worked "
        "in. "

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "plan/describe_rectify.h"
+#include "plan/layers_plan.h"
 #include "plan/value.h"
 
 namespace varve {
@@ -55,6 +56,25 @@ void note_visits(const SequenceInfo& info, Plan& plan) {
         "varve jitter visits all in turn");
 }
 
+// What makes a picture of the size of the frames only.
+void check_scale(const SequenceInfo& info, const Parameters& parameters) {
+  if (parameters.accumulator != Accumulator::subpixel)
+    throw Failure(ExitCode::usage,
+                  "--scale 2 writes the quarters of a pixel, which only --accumulator subpixel keeps; give it, or "
+                  "--preset yang, or leave --scale out");
+  if (parameters.fallback.any() || parameters.finish.sharpen > 0)
+    throw Failure(ExitCode::usage,
+                  "--scale 2 writes the quarters of a pixel as they are; give --sharpen 0 --blur-young 0 --motion-blur "
+                  "off with it");
+  if (composites_after(info))
+    throw Failure(ExitCode::usage,
+                  "--scale 2 does not put layers together that were resolved apart; give --layers composite, or "
+                  "resolve each layer by itself");
+  if (info.first.grid > 1)
+    throw Failure(ExitCode::usage,
+                  "--samples grid makes one pixel of several, and --scale 2 several of one; leave one of them out");
+}
+
 }  // namespace
 
 std::vector<PlannedPass> subpixel_passes(const SequenceInfo& info, const Parameters& parameters, Plan& plan) {
@@ -83,7 +103,12 @@ std::vector<PlannedPass> subpixel_passes(const SequenceInfo& info, const Paramet
            ? "the present weighs " + short_number(r.alpha) + " in its quarter"
            : "the present weighs 1/n in its quarter for n samples seen, at least " + short_number(r.alpha)});
   passes.push_back(bounds_pass(parameters));
-  passes.push_back({"picture", true, "each pixel is the mean of its four quarters as they are now"});
+  passes.push_back(
+      {"picture", true,
+       parameters.subpixel.scale > 1
+           ? "each quarter of a pixel becomes a pixel: twice the width and height; what is not resolved is "
+             "repeated 2x2"
+           : "each pixel is the mean of its four quarters as they are now"});
   return passes;
 }
 
@@ -117,6 +142,7 @@ void check_subpixel(const SequenceInfo& info, const Parameters& parameters) {
         ExitCode::usage,
         "--blur-limit and --residual-limit bound the weight of the present, which this --accumulator does not "
         "choose; give 0, or --accumulator recursive or subpixel");
+  if (parameters.subpixel.scale > 1) check_scale(info, parameters);
   if (!four) return;
   if (r.sample_filter != SampleFilter::none || r.unjitter != Unjitter::none)
     throw Failure(ExitCode::usage,
@@ -156,7 +182,8 @@ std::size_t subpixel_bytes_per_pixel(const Parameters& parameters, std::size_t c
   const std::size_t buffer = 16 + 4 + 4 + 12 + 8 + 16 * companions + (r.disocclusion == Disocclusion::depth ? 4 : 0) +
                              (r.reject.id != IdTest::off ? 4 : 0) + (r.reject.normal_angle > 0 ? 12 : 0);
   const std::size_t residual = r.residual_limit > 0 ? 20 : 0;
-  return 5 * buffer + residual;  // one more while a sample is blended in
+  const std::size_t quarters = parameters.subpixel.scale > 1 ? 8 * 16 * (1 + companions) : 0;  // and as written
+  return 5 * buffer + residual + quarters;  // one more while a sample is blended in
 }
 
 double subpixel_nanoseconds(const Parameters& parameters, std::size_t companions) {

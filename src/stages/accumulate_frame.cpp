@@ -71,6 +71,7 @@ std::vector<Resolved> accumulate_subpixel_frame(const AccumulatorOptions& option
                                             diagnostics_wanted(options.aovs), workers);
     history = std::move(step.history);
     resolved[group.front()].accumulated = std::move(step.resolved);
+    resolved[group.front()].quarters = std::move(step.quarters);
   }
   return resolved;
 }

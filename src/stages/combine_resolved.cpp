@@ -86,6 +86,7 @@ ResolvedColors combine_resolved(const SourceFrame& source, const std::vector<Res
   ResolvedColors all;
   const auto write = [&](const Subject& subject, const Present& present, const Resolved& r) {
     all.colors.push_back({&subject, &present, &r.accumulated, &r.prediction, nullptr, nullptr, nullptr});
+    if (!r.quarters.front().color.empty()) all.colors.back().quarters = r.quarters;
   };
   const auto tell_repair = [&](std::size_t k) {
     if (k < source.repairs.size()) all.colors.back().repair = &source.repairs[k];

@@ -1,19 +1,22 @@
 // From what was accumulated to the colors that are written: as it is, or several put together.
 #pragma once
 
+#include <array>
 #include <deque>
 #include <vector>
 
 #include "stages/combine_presents.h"
 #include "stages/source_frame.h"
 #include "stages/write_resolved.h"
+#include "subpixel/accumulate_subpixel.h"
 
 namespace varve {
 
 /// One thing that was accumulated: the present met its history.
 struct Resolved {
   Accumulated accumulated;
-  History prediction = {};  ///< only where the diagnostic plane of that name is asked for
+  History prediction = {};                             ///< only where the diagnostic plane of that name is asked for
+  std::array<ShownQuarter, kQuadrants> quarters = {};  ///< only with --scale 2
 };
 
 /// The colors of a frame, ready to be written. What they point to belongs to the frame, to what was resolved, or to

@@ -18,21 +18,21 @@ std::string name_without_number(const std::string& stem, const std::vector<Outpu
   return std::any_of(parts.begin(), parts.end(), taken) ? "resolved" : "rgba";
 }
 
-void divide(RawPlane& plane, double bias, int n, Workers& workers) {
+}  // namespace
+
+void divide_around(RawPlane& plane, double bias, double by, Workers& workers) {
   if (plane.empty() || plane.type == PixelType::uint32) return;
   const auto count = static_cast<std::size_t>(plane.columns);
   workers.for_rows(0, plane.rows, [&](int y) {
     std::vector<float> row(count);
     to_float(plane.type, plane.row(y), row.data(), count);
-    for (float& v : row) v = float(bias + (double(v) - bias) / n);
+    for (float& v : row) v = float(bias + (double(v) - bias) / by);
     if (plane.type == PixelType::float16)
       to_half_clamped(row.data(), reinterpret_cast<std::uint16_t*>(plane.row(y)), count);
     else
       std::memcpy(plane.row(y), row.data(), count * sizeof(float));
   });
 }
-
-}  // namespace
 
 void divide_passed_vectors(const FrameHeaders& headers, FramePixels& pixels, Workers& workers) {
   if (headers.grid == 1) return;
@@ -47,7 +47,8 @@ void divide_passed_vectors(const FrameHeaders& headers, FramePixels& pixels, Wor
                                             std::pair{output.subject.forward, output.subject.forward_encoding}})
       for (std::size_t axis = 0; vectors && encoding.unit == MotionUnit::pixel && axis < 2; ++axis)
         if (const ChannelRef ref = (*vectors)[axis]; once(ref))
-          divide(pixels.planes[std::size_t(ref.part)][std::size_t(ref.channel)], encoding.bias, headers.grid, workers);
+          divide_around(pixels.planes[std::size_t(ref.part)][std::size_t(ref.channel)], encoding.bias, headers.grid,
+                        workers);
 }
 
 void place_samples(const FrameHeaders& headers, std::vector<OutputPart>& parts) {

@@ -17,4 +17,7 @@ void place_samples(const FrameHeaders& headers, std::vector<OutputPart>& parts);
 /// it when nothing but writing is left to do with `pixels`.
 void divide_passed_vectors(const FrameHeaders& headers, FramePixels& pixels, Workers& workers);
 
+/// bias + (v - bias) / by for every value of a channel, held at the ends of half; integers stay.
+void divide_around(RawPlane& plane, double bias, double by, Workers& workers);
+
 }  // namespace varve

@@ -2,6 +2,7 @@
 
 #include "base/version.h"
 #include "exr/write_frame.h"
+#include "stages/double_resolution.h"
 #include "stages/place_samples.h"
 #include "stages/previews.h"
 
@@ -40,14 +41,20 @@ std::size_t write_outputs(const Setup& s, const std::string& path, const FrameHe
   const WriteOptions options = write_options(s, provenance, check);
   const std::vector<const Aov*> none;
   const bool apart = s.job.diagnostics.has_value();
-  FileOutput color =
-      resolved_parts(source, pixels.front(), resolved, apart ? none : s.aovs, s.job.request.keep_channels,
-                     headers.passed_on, s.out_of_working_space ? &*s.out_of_working_space : nullptr, workers);
+  const auto at_size = [&](const PartsOf& parts_of) {
+    return s.job.parameters.subpixel.scale > 1 ? double_resolution(headers, pixels.front(), resolved, parts_of, workers)
+                                               : parts_of(resolved);
+  };
+  FileOutput color = at_size([&](const std::vector<ResolvedSubject>& colors) {
+    return resolved_parts(source, pixels.front(), colors, apart ? none : s.aovs, s.job.request.keep_channels,
+                          headers.passed_on, s.out_of_working_space ? &*s.out_of_working_space : nullptr, workers);
+  });
   for (OutputPart& part : color.parts)
     if (!part.copy_chunks) part.compression = s.job.compression;
   place_samples(headers, color.parts);
   if (apart) {
-    FileOutput diagnostics = diagnostic_parts(source, resolved, s.aovs, workers);
+    FileOutput diagnostics = at_size(
+        [&](const std::vector<ResolvedSubject>& colors) { return diagnostic_parts(source, colors, s.aovs, workers); });
     place_samples(headers, diagnostics.parts);
     write_frame(s.job.diagnostics->path(headers.frame), stored, diagnostics.parts, options, workers);
   }

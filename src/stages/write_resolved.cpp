@@ -134,7 +134,7 @@ void add_companions(FileOutput& out, OutputPart& to, const Part& part, int p, co
     const Companion& companion = resolved.subject->companions[i];
     const auto lies_here = [&](const auto& ref) { return ref && ref->part == p; };
     if (std::none_of(companion.channels.begin(), companion.channels.end(), lies_here)) continue;
-    const Plane<glm::vec4>& history = resolved.accumulated->history.companions[i];
+    const Plane<glm::vec4>& history = resolved.companion(i);
     const Plane<glm::vec4> converted = color_to_write(history, companion.color ? conversion : nullptr, workers);
     const Plane<glm::vec4>& values = converted.empty() ? history : converted;
     const Window common = intersect(values.window(), part.data_window);
@@ -280,9 +280,10 @@ Plane<float> diagnostic_plane(const Aov& aov, int component, const ResolvedSubje
   if (aov.name == "layer-variation") fill_combined(present.combined.variation);
   if (aov.name == "layer-difference" && resolved.difference) fill(of(*resolved.difference));
   if (aov.name == "layers") fill_combined(present.combined.touched);
+  const float size = resolved.shown_quarter ? 2.0f : 1.0f;  // pixels written to one of the frame, along an edge
   if (aov.name == "motion")
     fill([&](int x, int y) {
-      const float v = present.motion.empty() ? 0.0f : present.motion.row(y)[x][component];
+      const float v = present.motion.empty() ? 0.0f : size * present.motion.row(y)[x][component];
       return v == v ? v : 0.0f;  // no vector: `reject` says so; outputs hold finite numbers only
     });
   return plane;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "exr/write_frame.h"
 #include "motion/repair_motion.h"
 #include "resolve/accumulate.h"
+#include "subpixel/accumulate_subpixel.h"
 
 namespace varve {
 
@@ -20,14 +22,20 @@ struct ResolvedSubject {
   const Subject* subject = nullptr;
   const Present* present = nullptr;
   const Accumulated* accumulated = nullptr;
-  const History* prediction = nullptr;         ///< only where the plane `prediction` is asked for
-  const Plane<glm::vec4>* finished = nullptr;  ///< what is written, where that is not what the history keeps
-  const Plane<float>* difference = nullptr;    ///< to what the other --layers mode gives; only where it is asked for
-  const MotionRepair* repair = nullptr;        ///< what was said of the vectors; null or without planes: nothing
-  const Plane<float>* lacking = nullptr;       ///< samples; only where the plane `evaluation` is asked for
+  const History* prediction = nullptr;          ///< only where the plane `prediction` is asked for
+  const Plane<glm::vec4>* finished = nullptr;   ///< what is written, where that is not what the history keeps
+  const Plane<float>* difference = nullptr;     ///< to what the other --layers mode gives; only where it is asked for
+  const MotionRepair* repair = nullptr;         ///< what was said of the vectors; null or without planes: nothing
+  const Plane<float>* lacking = nullptr;        ///< samples; only where the plane `evaluation` is asked for
+  std::span<const ShownQuarter> quarters = {};  ///< of every pixel; empty without --scale 2
+  const ShownQuarter* shown_quarter = nullptr;  ///< the one that is written in place of the pixel; null: the pixel is
 
   const Plane<glm::vec4>& color() const {
+    if (shown_quarter) return shown_quarter->color;
     return finished && !finished->empty() ? *finished : accumulated->history.color;
+  }
+  const Plane<glm::vec4>& companion(std::size_t i) const {
+    return shown_quarter ? shown_quarter->companions[i] : accumulated->history.companions[i];
   }
 };
 

@@ -2,9 +2,11 @@
 // pixel is the mean of its four quarters, as all histories together show them now.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "resolve/accumulate.h"
 #include "subpixel/blur_table.h"
@@ -12,9 +14,16 @@
 
 namespace varve {
 
+/// A quarter of every pixel, as it is shown; where nothing is known of it, what is known of the others.
+struct ShownQuarter {
+  Plane<glm::vec4> color;
+  std::vector<Plane<glm::vec4>> companions;
+};
+
 struct SubpixelStep {
   SubpixelHistory history;
   Accumulated resolved;  ///< its history is the picture: color, companions, total, and spread of all four
+  std::array<ShownQuarter, kQuadrants> quarters;  ///< filled where SubpixelParameters::scale is 2
 };
 
 /// The table of BlurBound::tabulated, to be made once; none where it is not asked for.

@@ -34,21 +34,24 @@ Shown show_quarter(const SubpixelHistory& history, const Present& present, const
 
 using Quarters = std::array<Shown, kQuadrants>;
 
-/// The mean of the four quarters of one plane; a quarter of which nothing is known has no part in it.
+/// The four quarters of one plane and their mean, written to `to` and, where they are wanted, to `shown[k]`. A quarter
+/// of which nothing is known has no part in the mean, and is shown as the mean.
 template <class PlaneOf>
 void show_plane(const SubpixelHistory& history, const Quarters& quarters, int x, int y, const glm::vec4& otherwise,
-                glm::vec4& to, PlaneOf plane) {
+                glm::vec4& to, const std::array<glm::vec4*, kQuadrants>& shown, PlaneOf plane) {
+  std::array<glm::dvec4, kQuadrants> color;
   glm::dvec4 pivot(0.0), sum(0.0);
   int n = 0;
   for (std::size_t k = 0; k < kQuadrants; ++k) {
     const Shown& q = quarters[k];
     if (!q.known) continue;
-    const glm::dvec4 color =
-        q.from.found ? weighed_color(history, q.from, plane) : glm::dvec4(plane(history.quadrants[k]).at(x, y));
-    if (n++ == 0) pivot = color;
-    sum += color - pivot;
+    color[k] = q.from.found ? weighed_color(history, q.from, plane) : glm::dvec4(plane(history.quadrants[k]).at(x, y));
+    if (n++ == 0) pivot = color[k];
+    sum += color[k] - pivot;
   }
   to = n > 0 ? held_color(pivot + sum / double(n)) : otherwise;
+  for (std::size_t k = 0; k < kQuadrants; ++k)
+    if (shown[k]) *shown[k] = quarters[k].known ? held_color(color[k]) : to;
 }
 
 /// What the picture has seen: samples of different histories are different samples, and a history that stands in for
@@ -120,6 +123,12 @@ void show_subpixel(const Present& present, const SubpixelParameters& subpixel, c
   History& picture = step.resolved.history = make_picture(present);
   AccumulateDiagnostics& diagnostics = step.resolved.diagnostics;
   if (wanted.blur) diagnostics.blur = Plane<float>(w);
+  const bool apart = subpixel.scale > 1;
+  for (ShownQuarter& q : step.quarters) {
+    if (!apart) break;
+    q.color = Plane<glm::vec4>(w);
+    for (std::size_t i = 0; i < present.companions.size(); ++i) q.companions.emplace_back(w);
+  }
   workers.for_rows(w.y0, w.y1, [&](int y) {
     for (int x = w.x0; x < w.x1; ++x) {
       Quarters quarters;
@@ -129,10 +138,13 @@ void show_subpixel(const Present& present, const SubpixelParameters& subpixel, c
         known += quarters[k].known;
       }
       const Seen seen = known > 0 ? seen_by(history, quarters, known, x, y) : Seen();
-      show_plane(history, quarters, x, y, present.color.at(x, y), picture.color.at(x, y),
+      std::array<glm::vec4*, kQuadrants> shown{};
+      for (std::size_t k = 0; apart && k < kQuadrants; ++k) shown[k] = &step.quarters[k].color.at(x, y);
+      show_plane(history, quarters, x, y, present.color.at(x, y), picture.color.at(x, y), shown,
                  [](const SubpixelBuffer& q) -> const Plane<glm::vec4>& { return q.color; });
       for (std::size_t i = 0; i < picture.companions.size(); ++i) {
-        show_plane(history, quarters, x, y, present.companions[i].at(x, y), picture.companions[i].at(x, y),
+        for (std::size_t k = 0; apart && k < kQuadrants; ++k) shown[k] = &step.quarters[k].companions[i].at(x, y);
+        show_plane(history, quarters, x, y, present.companions[i].at(x, y), picture.companions[i].at(x, y), shown,
                    [i](const SubpixelBuffer& q) -> const Plane<glm::vec4>& { return q.companions[i]; });
       }
       picture.total.at(x, y) = float(std::min(seen.total, 1e6));

@@ -33,6 +33,7 @@ struct SubpixelParameters {
   double radius = 0.5;  ///< px, half width of the tent, [0.5, 1]; widened where it does not hold enough samples
   SubpixelWeights weights = SubpixelWeights::first_order;
   BlurBound bound = BlurBound::tracked;
+  int scale = 1;  ///< 2: the quarters are written as pixels of their own
 };
 
 /// One of the four. Planes have the window of the frame that was added last; all are empty before the first.

@@ -85,16 +85,21 @@ void write_small_sequence(const std::filesystem::path& folder, const SmallSequen
   }
 }
 
-float pixel_of(const std::filesystem::path& path, const std::string& channel, int x, int y) {
+ChannelValues channel_of(const std::filesystem::path& path, const std::string& channel) {
   Imf::InputFile file(path.c_str(), 0);
   const Imath::Box2i window = file.header().dataWindow();
   const int w = window.max.x - window.min.x + 1, h = window.max.y - window.min.y + 1;
-  std::vector<float> values(std::size_t(w) * std::size_t(h), -12345.0f);
+  ChannelValues read{window.min.x, window.min.y, w, h, {}};
+  read.values.assign(std::size_t(w) * std::size_t(h), -12345.0f);
   Imf::FrameBuffer pixels;
-  pixels.insert(channel, Imf::Slice::Make(Imf::FLOAT, values.data(), window));
+  pixels.insert(channel, Imf::Slice::Make(Imf::FLOAT, read.values.data(), window));
   file.setFrameBuffer(pixels);
   file.readPixels(window.min.y, window.max.y);
-  return values[std::size_t(y - window.min.y) * std::size_t(w) + std::size_t(x - window.min.x)];
+  return read;
+}
+
+float pixel_of(const std::filesystem::path& path, const std::string& channel, int x, int y) {
+  return channel_of(path, channel).at(x, y);
 }
 
 bool is_complete(const std::filesystem::path& path) {

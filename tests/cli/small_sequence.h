@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace varve::test {
 
@@ -18,6 +19,14 @@ void write_small_sequence(const std::filesystem::path& folder, const SmallSequen
 
 /// One frame of it, under any name.
 void write_small_frame(const std::filesystem::path& path, int frame, const SmallSequence& sequence = {});
+
+/// One channel of a file without parts, row after row, as float.
+struct ChannelValues {
+  int x0 = 0, y0 = 0, width = 0, height = 0;  ///< data window
+  std::vector<float> values;
+  float at(int x, int y) const { return values[std::size_t(y - y0) * std::size_t(width) + std::size_t(x - x0)]; }
+};
+ChannelValues channel_of(const std::filesystem::path& path, const std::string& channel);
 
 /// One pixel of one channel of a file.
 float pixel_of(const std::filesystem::path& path, const std::string& channel, int x, int y);
