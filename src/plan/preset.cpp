@@ -48,7 +48,9 @@ constexpr Preset kPresets[] = {
      "box=variance gamma=1 window=3 moments=direct rule=clip anchor=present space=rgb hull-passes=64 "
      "clip-discount=off"},
     {"yang", "Yang, Nehab, Sander, Sitthi-amorn, Lawrence and Hoppe 2009, Amortized Supersampling",
-     "Four sub-pixel histories, blur and lag bounded, nothing but depth to drop history; needs jitter and depth.",
+     "Four sub-pixel histories, blur and lag bounded, nothing but depth to drop history; needs jitter and depth. Where "
+     "there "
+     "are ids, --id-test hard keeps things that touch from leaving trails.",
      "accumulator=subpixel dilation=none alpha=0.15 alpha-rule=mean disocclusion=depth sample-filter=none "
      "blur-limit=0.3 residual-limit=0.3 residual-window=7 subpixel-radius=0.5 subpixel-weights=second-order "
      "blur-bound=tracked box=none moments=direct hull-passes=64 clip-discount=off"},
