@@ -39,7 +39,7 @@ struct ResolveJob {
   bool resume = false;
   double wait_seconds = 0;          ///< how long to wait for requested frames that are not there yet; 0: not at all
   std::string state_in, state_out;  ///< files of the history before the first and after the last frame; empty: none
-  int threads = 0;  ///< 0: every processor
+  int threads = 0;                  ///< 0: every processor
 };
 
 }  // namespace varve
