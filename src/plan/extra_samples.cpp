@@ -40,25 +40,25 @@ bool has_numbers(const FileHeader& file) {
 void check_job(const ResolveJob& job, const SequenceInfo& info) {
   const auto refuse = [](const char* what) { throw Failure(ExitCode::usage, what); };
   const SampleRequest& samples = job.roles.samples;
-  const bool gathers = job.parameters.accumulator == Accumulator::gather ||
-                       job.parameters.accumulator == Accumulator::subpixel;  // samples at their own places
+  const bool gathers = job.parameters.accumulator == Accumulator::gather;
+  const bool places = gathers || job.parameters.accumulator == Accumulator::subpixel;  // each sample where it lies
   if (job.roles.combine_layers.mode != LayersMode::apart)
     refuse(
         "--extra adds samples to one color, and --layers makes it of several; resolve each layer with its own "
         "--extra first, then the layers");
-  if (samples.mode != SampleMode::off && (samples.grid > 0 || samples.mode != SampleMode::each || !gathers))
+  if (samples.mode != SampleMode::off && (samples.grid > 0 || samples.mode != SampleMode::each || !places))
     refuse(
         "with --samples, --extra needs each sample for itself; give --samples each --accumulator gather, or leave "
         "--samples out and name the further samples with --extra");
   if (!job.roles.channels.empty() && job.roles.channel_weights == ChannelWeights::own)
     refuse("--extra adds samples to the colors of the frames; give --channel-weights beauty, or leave --channels out");
-  if (!job.roles.channels.empty() && !gathers && job.parameters.recursive.sample_filter != SampleFilter::none)
+  if (!job.roles.channels.empty() && !places && job.parameters.recursive.sample_filter != SampleFilter::none)
     refuse(
         "--channels are not reconstructed from samples of --extra; give --sample-filter none, --accumulator gather, "
         "or leave --channels out");
   if (!job.input.roles.empty())
     refuse("--extra takes depth and vectors from the files of the colors; leave --depth-file and --motion-file out");
-  if (job.parameters.recursive.unjitter != Unjitter::none && !gathers)
+  if (job.parameters.recursive.unjitter != Unjitter::none && !places)
     refuse(
         "--unjitter moves all samples of a frame alike, and those of --extra lie elsewhere; give --sample-filter "
         "gaussian and --unjitter none");
