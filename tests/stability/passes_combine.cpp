@@ -14,12 +14,6 @@
 namespace varve::stability {
 namespace {
 
-template <class F>
-void each_pixel(const Window& w, const F& f) {
-  for (int y = w.y0; y < w.y1; ++y)
-    for (int x = w.x0; x < w.x1; ++x) f(x, y);
-}
-
 std::vector<Present> presents_of(const RawShot& shot, Workers& workers) {
   std::vector<Present> presents;
   for (const RawFrame& frame : shot) presents.push_back(present_of(frame, workers));

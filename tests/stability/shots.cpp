@@ -13,12 +13,6 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
 constexpr float kDenormal = std::numeric_limits<float>::denorm_min();
 
-template <class F>
-void each_pixel(const Window& w, const F& f) {
-  for (int y = w.y0; y < w.y1; ++y)
-    for (int x = w.x0; x < w.x1; ++x) f(x, y);
-}
-
 using Random = std::mt19937;
 float unit(Random& random) { return std::uniform_real_distribution<float>(0, 1)(random); }
 

@@ -10,6 +10,13 @@
 
 namespace varve::stability {
 
+/// f(x, y) for every pixel of the window.
+template <class F>
+void each_pixel(const Window& w, const F& f) {
+  for (int y = w.y0; y < w.y1; ++y)
+    for (int x = w.x0; x < w.x1; ++x) f(x, y);
+}
+
 /// One frame before anything was looked at: any bits. Vectors in pixels, y down; empty planes are not there.
 struct RawFrame {
   Plane<glm::vec4> color;

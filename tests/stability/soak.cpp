@@ -9,12 +9,6 @@
 namespace varve::stability {
 namespace {
 
-template <class F>
-void each_pixel(const Window& w, const F& f) {
-  for (int y = w.y0; y < w.y1; ++y)
-    for (int x = w.x0; x < w.x1; ++x) f(x, y);
-}
-
 /// Noise over an edge; new in each frame.
 void paint(RawFrame& frame, std::mt19937& random) {
   std::uniform_real_distribution<float> unit(0, 1);

@@ -12,12 +12,6 @@ namespace varve::stability {
 
 inline constexpr Window kTwinWindow{-3, 2, 12, 13};
 
-template <class F>
-void each_pixel(const Window& w, const F& f) {
-  for (int y = w.y0; y < w.y1; ++y)
-    for (int x = w.x0; x < w.x1; ++x) f(x, y);
-}
-
 /// The largest |value| of the present and, where given, the history within `reach`: what rounding goes by. Below it
 /// floats have no relative steps any more.
 double size_around(const Present& present, const History* history, int x, int y, int reach);
